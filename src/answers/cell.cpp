@@ -68,17 +68,6 @@ Json jammed_json(const JammingAnswer& answer) {
 
 } // namespace
 
-Json strains_json(const StrainCounts& counts) {
-    Json out;
-    for (std::size_t k = 0; k < strains.size(); ++k) {
-        const Counting& c = counts[k];
-        out[to_string(strains[k])] = {{"N_f", c.dof_count},    {"N", c.contact_count},
-                                      {"rank", c.rank},        {"rank_exact", to_string(c.rank_exact)},
-                                      {"h", c.hyperstaticity}, {"k", c.mechanisms}};
-    }
-    return out;
-}
-
 std::string cell_words(const Packing& packing) {
     std::string text;
     for (std::size_t a = 0; a < packing.axes(); ++a) {
@@ -125,15 +114,10 @@ void print_box(std::string& out, const Packing& packing, const BoxInspection& bo
 }
 
 Json box_json(const BoxInspection& box) {
-    const Counting& c = box.counting;
-    return {{"grains", box.grains},
-            {"N_f", c.dof_count},
-            {"N", c.contact_count},
-            {"rank", c.rank},
-            {"rank_exact", to_string(c.rank_exact)},
-            {"h", c.hyperstaticity},
-            {"k", c.mechanisms},
-            {"jammed", {{"collective", jammed_json(box.collective)}}}};
+    Json out{{"grains", box.grains}};
+    out.update(json::counts(box.counting));
+    out["jammed"]["collective"] = jammed_json(box.collective);
+    return out;
 }
 
 Json cell_json(const Packing& packing, const CellInspection& cell) {
@@ -144,9 +128,9 @@ Json cell_json(const Packing& packing, const CellInspection& cell) {
     } else {
         out["tilt"] = tilts_of(packing);
     }
-    out["all"] = strains_json(cell.all);
+    out["all"] = json::counts(cell.all);
     out["backbone_disks"] = cell.backbone_disks;
-    out["backbone"] = cell.backbone ? strains_json(*cell.backbone) : Json();
+    out["backbone"] = cell.backbone ? json::counts(*cell.backbone) : Json();
     for (const auto& [name, answer] : {std::pair("local", &cell.local), std::pair("collective", &cell.collective),
                                        std::pair("strict", &cell.strict)}) {
         out["jammed"][name] = jammed_json(*answer);

@@ -25,8 +25,7 @@ std::vector<std::string> names_of(const std::vector<std::pair<Contact, Enclosure
 }
 
 bool takes_part(const ForceFace& face, std::size_t l) {
-    return std::any_of(face.self_stresses.begin(), face.self_stresses.end(),
-                       [l](const std::vector<double>& stress) { return stress[l] != 0; });
+    return std::ranges::any_of(face.self_stresses, [l](const std::vector<double>& stress) { return stress[l] != 0; });
 }
 
 Result<ForceFace> face_of(const State& state) {

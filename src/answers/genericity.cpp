@@ -1,13 +1,13 @@
 #include "answers/genericity.hpp"
 
 #include "contact/names.hpp"
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/text.hpp"
 #include "io/vertex_text.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/state_file.hpp>
 
@@ -39,7 +39,7 @@ template <class Get> std::array<double, 3> spread(const Genericity& result, Get 
     if (values.empty()) {
         return {HUGE_VAL, HUGE_VAL, HUGE_VAL};
     }
-    std::sort(values.begin(), values.end());
+    std::ranges::sort(values);
     return {values.front(), values[values.size() / 2], values.back()};
 }
 
@@ -48,12 +48,12 @@ std::string list_text(const std::vector<Contact>& list, const std::vector<Contac
     int lost = 0, gained = 0;
     constexpr int most = 8;
     for (const Contact& c : original) {
-        if (!std::binary_search(list.begin(), list.end(), c) && ++lost <= most) {
+        if (!std::ranges::binary_search(list, c) && ++lost <= most) {
             missing += " " + to_string(c, dimension);
         }
     }
     for (const Contact& c : list) {
-        if (!std::binary_search(original.begin(), original.end(), c) && ++gained <= most) {
+        if (!std::ranges::binary_search(original, c) && ++gained <= most) {
             added += " " + to_string(c, dimension);
         }
     }
@@ -120,7 +120,7 @@ GenericityOriginal read_original(const std::string& file) {
         const crafted::PackingFile crafted = crafted::parse_packing(text, file);
         const auto inspection = crafted::inspect_file(crafted, file);
         if (!inspection.ok()) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: {}", file, inspection.failure().message()));
+            refuse(file, inspection.failure().message());
         }
         out.packing = crafted::approximate(crafted.packing);
         out.contacts = unilateral(inspection.value().contacts);
@@ -141,13 +141,10 @@ GenericityOriginal read_original(const std::string& file) {
         out.with_radii = crafted::count_with_radii(crafted::exact_copy(out.packing), out.contacts);
         out.title = "contacts of the state, stored coordinates";
     } else {
-        throw Error(
-            ErrorKind::bad_input,
-            fmt::format("{}: not a file of this program: expected a crafted packing (TOML), a state or a vertex "
-                        "text; isostat import makes a state of a packing of another program",
-                        file));
+        refuse(file, "not a file of this program: expected a crafted packing (TOML), a state or a vertex text; isostat "
+                     "import makes a state of a packing of another program");
     }
-    std::sort(out.contacts.begin(), out.contacts.end());
+    std::ranges::sort(out.contacts);
     return out;
 }
 

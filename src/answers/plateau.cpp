@@ -24,6 +24,11 @@ using json::Json;
 using json::or_null;
 using text::say;
 
+/// Whether two ranges begin at the same list or overlap.
+bool meet(const PlateauRange& a, const PlateauRange& b) {
+    return a.candidates == b.candidates || std::max(a.first, b.first) < std::min(a.last, b.last);
+}
+
 /// The backbone of the widest range; without such a range, at the largest threshold.
 std::vector<Contact> shown_backbone(const Packing& packing, const crafted::Plateau& plateau, double& threshold) {
     threshold = plateau.widest ? plateau.widest->range.first : threshold;
@@ -91,7 +96,7 @@ void print_ranges(std::string& out, const std::string& title, const std::vector<
     }
 }
 
-std::string noise_text(const crafted::Told& told, double rounding) {
+std::string noise_text(const Told& told, double rounding) {
     return told.noise == 0
                ? ""
                : fmt::format(
@@ -113,7 +118,7 @@ std::string self_stress_text(const crafted::Plateau& plateau) {
 }
 
 /// Prints the main result, the widest range.
-void print_headline(std::string& out, const crafted::Plateau& plateau, const crafted::Told& told,
+void print_headline(std::string& out, const crafted::Plateau& plateau, const Told& told,
                     const std::array<double, 2>& thresholds) {
     const std::string none = fmt::format("at no threshold of [{:.6g}, {:.6g}]", thresholds[0], thresholds[1]);
     if (plateau.widest) {
@@ -161,6 +166,28 @@ Json ranges_json(const std::vector<PlateauRange>& ranges) {
 }
 
 } // namespace
+
+Told told_of(const crafted::Plateau& plateau) {
+    Told out;
+    const auto in_widest = [&plateau](const PlateauRange& range) { // no range is the widest where no contact can carry
+        return plateau.widest && meet(range, plateau.widest->range);
+    };
+    for (const PlateauRange& range : plateau.ranges) {
+        if (!range.told) {
+            ++out.noise;
+        } else {
+            (in_widest(range) ? out.backbone : out.elsewhere).push_back(range);
+        }
+    }
+    for (const PlateauRange& range : plateau.ranges_all) {
+        if (range.told && in_widest(range)) {
+            out.all.push_back(range);
+        }
+    }
+    out.special =
+        std::ranges::any_of(plateau.special, [&](const auto& range) { return range.told && in_widest(range); });
+    return out;
+}
 
 std::string to_text(const PlateauAnswer& answer) {
     const auto& [name, strain, file, plateau, told, thresholds] = answer;
@@ -257,7 +284,7 @@ void add_plateau(Json& out, const PlateauAnswer& answer) {
         const std::vector<Contact> backbone = shown_backbone(file.packing, plateau, threshold);
         out["cell"] = {{"strain", strain},
                        {"threshold", or_null(threshold)},
-                       {"backbone", strains_json(strains_of(file.packing, backbone))}};
+                       {"backbone", json::counts(strains_of(file.packing, backbone))}};
     }
 }
 

@@ -2,7 +2,6 @@
 /// \file
 /// The output of `plateau`.
 
-#include "crafted/told_ranges.hpp"
 #include "io/json.hpp"
 
 #include <isostat/crafted/plateau.hpp>
@@ -13,12 +12,21 @@
 
 namespace isostat::answers {
 
+/// The isostatic ranges worth reporting.
+struct Told {
+    std::vector<crafted::PlateauRange> backbone, all; ///< inside the widest range: the result
+    std::vector<crafted::PlateauRange> elsewhere;     ///< other ranges of the backbone
+    int noise = 0;                                    ///< ranges of the backbone left out as narrower than the rounding
+    bool special = false;                             ///< the widest range has N = N_f and no full rank
+};
+Told told_of(const crafted::Plateau& plateau);
+
 struct PlateauAnswer {
     const std::string& name; ///< of the file
     const std::string& strain;
     const ForeignPacking& file;
     const crafted::Plateau& plateau;
-    const crafted::Told& told;
+    const Told& told;
     std::array<double, 2> thresholds;
 };
 

@@ -60,7 +60,7 @@ void print_counting(std::string& out, const State& state, const Counting& c) {
         periodic ? cell_words(state.packing) : fmt::format("{}", fmt::join(lengths_of(state), " x ")),
         state.packing.solid_fraction());
     const auto shears = std::span(state.load.shear).first(state.packing.tilts());
-    const bool sheared = std::any_of(shears.begin(), shears.end(), [](double shear) { return shear != 0; });
+    const bool sheared = std::ranges::any_of(shears, [](double shear) { return shear != 0; });
     say(out, "load                     sigma = ({}){}, {}\n", fmt::format("{}", fmt::join(stresses_of(state), ", ")),
         sheared ? fmt::format(", shear {}", fmt::join(shears, ", ")) : "",
         state.load.kind != LoadKind::nominal ? "true stresses"
@@ -124,7 +124,7 @@ int carrying_count(const Inspection& inspection) {
 /// Counts rattling bodies by their first members.
 int rattling_bodies(const Packing& packing, const std::vector<int>& rattlers) {
     const Bodies bodies(packing);
-    return static_cast<int>(std::count_if(rattlers.begin(), rattlers.end(), [&](int i) { return bodies.of(i) == i; }));
+    return static_cast<int>(std::ranges::count_if(rattlers, [&](int i) { return bodies.of(i) == i; }));
 }
 
 void print_yielding(std::string& out, const Inspection& inspection, const Load& load) {
@@ -213,12 +213,7 @@ Json counting_json(const std::string& file, const State& state, const Counting& 
                           {"stress", numbers(of_path(state, path->at))},
                           {"direction", numbers(of_path(state, path->rate))}};
     }
-    object["N_f"] = c.dof_count;
-    object["N"] = c.contact_count;
-    object["rank"] = c.rank;
-    object["rank_exact"] = to_string(c.rank_exact);
-    object["h"] = c.hyperstaticity;
-    object["k"] = c.mechanisms;
+    object.update(json::counts(c));
     return object;
 }
 

@@ -22,7 +22,6 @@ std::string cell_words(const Packing& packing);
 
 /// Counts of the stored coordinates, one row for each way to strain the cell.
 void print_counts(std::string& out, const std::string& title, const StrainCounts& counts);
-json::Json strains_json(const StrainCounts& counts);
 
 void print_box(std::string& out, const Packing& packing, const BoxInspection& box);
 json::Json box_json(const BoxInspection& box);

@@ -134,8 +134,7 @@ void print_claims(std::string& out, const Certification& certification, const st
              "");
     }
     for (const std::string& reason : c.undecided) {
-        const bool refuted = std::find(certification.refuted.begin(), certification.refuted.end(), reason) !=
-                             certification.refuted.end();
+        const bool refuted = std::ranges::find(certification.refuted, reason) != certification.refuted.end();
         say(out, "{:<14} {}\n", refuted ? "refuted" : "not claimed", reason);
     }
 }

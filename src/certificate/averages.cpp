@@ -77,7 +77,7 @@ ForceAverages force_averages(const State& state, const Certification& truth) {
         pairs += pair ? 1 : 0;
     }
     for (PerAxis<double>& row : sum.fabric) {
-        std::transform(row.begin(), row.end(), row.begin(), [pairs](double x) { return x / std::max(1, pairs); });
+        std::ranges::transform(row, row.begin(), [pairs](double x) { return x / std::max(1, pairs); });
     }
     sum.mean_force /= std::max(1, contacts);
     return sum;
@@ -97,7 +97,7 @@ std::vector<std::pair<double, double>> force_distribution(const State& state, co
     if (!(mean > 0)) {
         return {};
     }
-    const double largest = *std::max_element(forces.begin(), forces.end()) / mean;
+    const double largest = *std::ranges::max_element(forces) / mean;
     std::vector<std::pair<double, double>> bins(static_cast<std::size_t>(largest / width) + 1);
     for (std::size_t k = 0; k < bins.size(); ++k) {
         bins[k].first = (static_cast<double>(k) + 0.5) * width;

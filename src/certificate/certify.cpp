@@ -1,7 +1,6 @@
 #include "certificate/exact_counting.hpp"
 #include "certificate/finite_forces.hpp"
 #include "certificate/reach.hpp"
-#include "certificate/sectors.hpp"
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
 #include "contact/images.hpp"
@@ -189,8 +188,8 @@ bool Prover::prove_counting() {
 bool Prover::claim_regular(int rows) {
     const std::vector<Contact>& list = state_.contacts;
     const int bars = bar_count(list);
-    const int held = static_cast<int>(
-        std::count_if(list.begin(), list.end(), [](const Contact& c) { return c.kind == ContactKind::held; }));
+    const int held =
+        static_cast<int>(std::ranges::count_if(list, [](const Contact& c) { return c.kind == ContactKind::held; }));
     const int contacts = rows - bars - held;
     result_.counting = {rows - bars, contacts, contacts, 0, held, Verdict::proved, {}};
     if (const auto bears = held > 0 ? held_under_load() : std::nullopt) {
@@ -221,7 +220,7 @@ void Prover::claim_minimum() {
 /// The first held coordinate that the load may act on; infinitesimal loads may act on any.
 std::optional<Contact> Prover::held_under_load() const {
     const std::vector<double>& g = state_.load.infinitesimal;
-    const bool pressed = std::any_of(g.begin(), g.end(), [](double x) { return x != 0; });
+    const bool pressed = std::ranges::any_of(g, [](double x) { return x != 0; });
     const Subject subject(state_, stored_->structure);
     for (std::size_t l = 0; l < state_.contacts.size(); ++l) {
         if (state_.contacts[l].kind == ContactKind::held && (subject.zero[l] == 0 || pressed)) {
@@ -246,8 +245,7 @@ void Prover::claim_that_nothing_moves() {
 
 /// Of a structure that is not isostatic, or not proved to be.
 void Prover::claim_other_counts() {
-    if (std::any_of(state_.contacts.begin(), state_.contacts.end(),
-                    [](const Contact& c) { return c.kind == ContactKind::held; })) {
+    if (std::ranges::any_of(state_.contacts, [](const Contact& c) { return c.kind == ContactKind::held; })) {
         result_.counting = count_contacts(state_.packing, state_.contacts);
         const std::string reason = "coordinates are held, and the list with these is not proved regular";
         absent("counting", reason);
@@ -384,8 +382,8 @@ bool Prover::prove_forces() {
 
 /// A run that settles ties at first order, or chooses, calls that an equilibrium of the finite loads.
 bool left_at_zero(const State& state, const Contact& contact) {
-    return state.perturbation && std::any_of(state.perturbation->zero.begin(), state.perturbation->zero.end(),
-                                             [&](const auto& left) { return left.first == contact; });
+    return state.perturbation &&
+           std::ranges::any_of(state.perturbation->zero, [&](const auto& left) { return left.first == contact; });
 }
 
 /// Its load is the one at which a force vanishes, not the double nearest to that, which is stored.
@@ -489,9 +487,8 @@ bool Prover::prove_gaps() {
         }
         // Another pair may be nearer than the one named, by more than the claim leaves open.
         const double room = 0x1p-47 * largest_length(state_.packing);
-        const bool unclear = std::any_of(gaps.begin(), gaps.end(), [&](const Interval& h) {
-            return h != nearest && h.lower < nearest.upper - room;
-        });
+        const bool unclear = std::ranges::any_of(
+            gaps, [&](const Interval& h) { return h != nearest && h.lower < nearest.upper - room; });
         if (doubtful.empty() && unclear) {
             doubtful = "which pair comes nearest is not known";
         }
@@ -550,7 +547,7 @@ void Prover::prove_stability(bool forces, bool gaps) {
     } else if (load.kind == LoadKind::nominal) {
         result_.claims.stable = true;
         result_.potential = "the potential of the load";
-    } else if (std::any_of(load.disk_force.begin(), load.disk_force.end(), [](double f) { return f != 0; })) {
+    } else if (std::ranges::any_of(load.disk_force, [](double f) { return f != 0; })) {
         absent("stability", "true stresses together with forces on disks have no potential");
     } else if (!(shortest_side() > vertex_->distance())) {
         absent("stability", "the potential of true stresses needs positive lengths");

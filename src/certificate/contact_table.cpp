@@ -64,7 +64,7 @@ std::string contact_table(const State& state, const Certification& truth) {
         text += ",";
         if (forces) {
             const auto& zeros = forces->structural_zeros;
-            const auto place = std::lower_bound(zeros.begin(), zeros.end(), static_cast<int>(l));
+            const auto place = std::ranges::lower_bound(zeros, static_cast<int>(l));
             if (place != zeros.end() && *place == static_cast<int>(l)) {
                 const Interval& f = forces->infinitesimal[static_cast<std::size_t>(place - zeros.begin())];
                 text += fmt::format("{}", 0.5 * f.lower + 0.5 * f.upper);

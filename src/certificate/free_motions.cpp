@@ -42,15 +42,14 @@ std::vector<int> farthest_moving(const Packing& packing, const std::vector<Conta
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivots(motions.transpose());
     const auto& order = pivots.colsPermutation().indices();
     std::vector<int> rows(order.data(), order.data() + k);
-    std::sort(rows.begin(), rows.end());
+    std::ranges::sort(rows);
     return rows;
 }
 
 } // namespace
 
 State with_free_motions_held(State state) {
-    const bool held = std::any_of(state.contacts.begin(), state.contacts.end(),
-                                  [](const Contact& c) { return c.kind == ContactKind::held; });
+    const bool held = std::ranges::any_of(state.contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
     if (state.packing.bars.empty() || held) {
         return state;
     }

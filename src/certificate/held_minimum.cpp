@@ -184,9 +184,9 @@ class HeldForm {
     [[nodiscard]] bool stay_in_sectors(double way) const {
         const double distance = vertex_.enclosure.distance();
         const double moved = (way + distance) * up;
-        return !arcs_.any() || (distance < way / 16 && moved < arcs_.farthest() &&
-                                std::all_of(contacts_.begin(), contacts_.end(),
-                                            [&](const Contact& contact) { return arcs_.faces(contact, moved); }));
+        return !arcs_.any() ||
+               (distance < way / 16 && moved < arcs_.farthest() &&
+                std::ranges::all_of(contacts_, [&](const Contact& contact) { return arcs_.faces(contact, moved); }));
     }
     [[nodiscard]] Enclosure force(std::size_t l) const {
         return vertex_.statics.force(ContactId(l), load_.loaded_stress());
@@ -378,7 +378,7 @@ class HeldForm {
     void find_variation(HeldMinimum& minimum) const {
         std::vector<HeldMotion> motions;
         for (std::size_t l = 0; l < contacts_.size(); ++l) {
-            if (contacts_[l].kind == ContactKind::held && !std::binary_search(acting_.begin(), acting_.end(), l)) {
+            if (contacts_[l].kind == ContactKind::held && !std::ranges::binary_search(acting_, l)) {
                 motions.push_back(motion_of(vertex_, l));
             }
         }
@@ -393,7 +393,7 @@ class HeldForm {
         form.bottomRightCorner(k, k) = form_;
         error.bottomRightCorner(k, k) = error_;
         const std::vector<Enclosure> all = eigenvalues(form, error, columns, off);
-        if (std::all_of(all.begin(), all.end(), [](const Enclosure& value) { return std::isfinite(value.radius); })) {
+        if (std::ranges::all_of(all, [](const Enclosure& value) { return std::isfinite(value.radius); })) {
             minimum.second_variation.assign(all.end() - k, all.end());
         }
     }

@@ -28,8 +28,7 @@ double half_width(const Interval& interval) {
 }
 
 bool has_held(const State& state) {
-    return std::any_of(state.contacts.begin(), state.contacts.end(),
-                       [](const Contact& c) { return c.kind == ContactKind::held; });
+    return std::ranges::any_of(state.contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
 }
 
 void describe_forces(Inspection& inspection) {
@@ -75,12 +74,12 @@ void find_rattlers(const State& state, Inspection& inspection) {
     const std::vector<Contact> bearing = unmarked(state.contacts, inspection.structural_zero);
     const std::vector<int> idle = untouched(packing.disk_count(), unilateral(bearing));
     for (const std::vector<int>& body : Bodies(packing).members(1)) {
-        const auto held = std::count_if(body.begin(), body.end(), [&](int member) {
+        const auto held = std::ranges::count_if(body, [&](int member) {
             const auto k = packing.axes() * static_cast<std::size_t>(member);
             const std::vector<double>& force = state.load.disk_force;
             const bool loaded = !force.empty() && std::any_of(&force[k], &force[k] + packing.axes(),
                                                               [](double component) { return component != 0; });
-            return loaded || !std::binary_search(idle.begin(), idle.end(), member) ||
+            return loaded || !std::ranges::binary_search(idle, member) ||
                    (body.size() > 1 && packing.is_fixed(DiskId(member))); // a fixed member holds its body
         });
         if (held == 0) {
@@ -89,7 +88,7 @@ void find_rattlers(const State& state, Inspection& inspection) {
             inspection.rotational_rattlers.push_back(body.front());
         }
     }
-    std::sort(inspection.rattlers.begin(), inspection.rattlers.end());
+    std::ranges::sort(inspection.rattlers);
 }
 
 /// Of a state whose true vertex was found.

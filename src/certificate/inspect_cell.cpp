@@ -65,7 +65,7 @@ JammingAnswer strictly(const State& state, const std::vector<unsigned char>& zer
                       "k = 0 for full strain, and every force of the backbone is positive under an isotropic pressure"};
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const auto every = [&](auto test) {
-            return std::all_of(corners.begin(), corners.end(), [&](const auto& forces) { return test(forces[l]); });
+            return std::ranges::all_of(corners, [&](const auto& forces) { return test(forces[l]); });
         };
         const std::string name = to_string(state.contacts[l], state.packing.dimension);
         if (every([](const Interval& f) { return f.upper < 0; })) {
@@ -84,8 +84,7 @@ JammingAnswer strictly(const State& state, const std::vector<unsigned char>& zer
 /// Along so many periods do grains touch images of their own.
 int periods_of(const std::vector<Contact>& own) {
     std::set<Image> images;
-    std::transform(own.begin(), own.end(), std::inserter(images, images.end()),
-                   [](const Contact& pair) { return pair.image; });
+    std::ranges::transform(own, std::inserter(images, images.end()), [](const Contact& pair) { return pair.image; });
     return static_cast<int>(images.size());
 }
 
@@ -93,9 +92,8 @@ int periods_of(const std::vector<Contact>& own) {
 /// contacts leave of full strain, own images may close (C7). \p own: those of the backbone; \p others: of rattlers.
 void judge(const State& state, const Certification& truth, const std::vector<Contact>& own,
            const std::vector<Contact>& others, CellInspection& out) {
-    const auto moving =
-        std::count(state.packing.cell.period_moves.begin(), state.packing.cell.period_moves.end(), true) +
-        std::count(state.packing.cell.tilt_moves.begin(), state.packing.cell.tilt_moves.end(), true);
+    const auto moving = std::ranges::count(state.packing.cell.period_moves, true) +
+                        std::ranges::count(state.packing.cell.tilt_moves, true);
     const int missing = strain_count(Strain::full, state.packing.dimension) - static_cast<int>(moving);
     const int closed = periods_of(own); // in space up to 2, and then more are missing
     out.collective = {Verdict::proved, "positive forces, and no mechanism: k = 0 at the true vertex"};
@@ -123,8 +121,7 @@ std::vector<Contact> joined(std::vector<Contact> contacts, const std::vector<Con
 /// Own images that touch and are not in the list.
 std::vector<Contact> own_besides(const Packing& packing, const std::vector<Contact>& contacts) {
     std::vector<Contact> own = touching_own_images(packing);
-    std::erase_if(
-        own, [&](const Contact& pair) { return std::find(contacts.begin(), contacts.end(), pair) != contacts.end(); });
+    std::erase_if(own, [&](const Contact& pair) { return std::ranges::find(contacts, pair) != contacts.end(); });
     return own;
 }
 
@@ -160,10 +157,10 @@ State with_size(State state) {
 std::optional<BoxInspection> inspect_box(const State& state, const Certification& truth) {
     const Box box = box_of(state.packing);
     const auto any = [](const auto& values) {
-        return std::any_of(values.begin(), values.end(), [](const auto& value) { return value != 0; });
+        return std::ranges::any_of(values, [](const auto& value) { return value != 0; });
     };
-    const bool holds = std::any_of(state.contacts.begin(), state.contacts.end(),
-                                   [](const Contact& c) { return c.kind == ContactKind::held; });
+    const bool holds =
+        std::ranges::any_of(state.contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
     const bool clumps = !state.packing.bars.empty(); // what their rattlers are is told by forces
     if (clumps || box == Box::none || any(state.packing.fixed) || any(state.load.disk_force) || holds) {
         return std::nullopt;
@@ -171,7 +168,7 @@ std::optional<BoxInspection> inspect_box(const State& state, const Certification
     const std::vector<int> rattlers = rattlers_by_coordination(state.packing, state.contacts);
     State rest = state;
     rest.packing = without_disks(state.packing, rattlers);
-    const auto rattles = [&](int i) { return std::binary_search(rattlers.begin(), rattlers.end(), i); };
+    const auto rattles = [&](int i) { return std::ranges::binary_search(rattlers, i); };
     std::erase_if(rest.contacts, [&](const Contact& c) { return rattles(c.i) || (c.of_disks() && rattles(c.j)); });
     BoxInspection out;
     out.grains = state.packing.disk_count() - static_cast<int>(rattlers.size());
@@ -215,7 +212,7 @@ CellInspection inspect_cell(const State& state, const Certification& truth) {
     out.all = count_strains(state.packing, joined(state.contacts, own));
     const bool equilibrium = truth.claims.vertex && truth.claims.forces && truth.claims.gaps;
     const auto& on_disks = state.load.disk_force;
-    const bool loaded = std::any_of(on_disks.begin(), on_disks.end(), [](double f) { return f != 0; });
+    const bool loaded = std::ranges::any_of(on_disks, [](double f) { return f != 0; });
     if (!equilibrium || loaded) {
         const JammingAnswer unknown{Verdict::undecided,
                                     loaded ? "forces on disks: no self-stress is known"
@@ -232,7 +229,7 @@ CellInspection inspect_cell(const State& state, const Certification& truth) {
     out.backbone_disks = state.packing.disk_count() - static_cast<int>(rattlers.size());
     if (out.backbone_disks > 0) {
         const auto rattling = std::stable_partition(own.begin(), own.end(), [&](const Contact& pair) {
-            return std::find(rattlers.begin(), rattlers.end(), pair.i) == rattlers.end();
+            return std::ranges::find(rattlers, pair.i) == rattlers.end();
         });
         const std::vector<Contact> others(rattling, own.end());
         own.erase(rattling, own.end());

@@ -129,8 +129,8 @@ std::optional<JammedIfClosed> judge_list(const ClosedList& list, double moved) {
         out.within = std::min(out.within, radius / 2);
     }
     out.within -= moved;
-    const bool near = std::all_of(list.contacts.begin(), list.contacts.end(),
-                                  [&](const Contact& c) { return std::abs(gap(list.packing, c)) <= out.within; });
+    const bool near = std::ranges::all_of(
+        list.contacts, [&](const Contact& c) { return std::abs(gap(list.packing, c)) <= out.within; });
     return near && out.within > 0 && certify_admissible(list.packing, out.within).verdict == Verdict::proved
                ? std::optional(out)
                : std::nullopt;
@@ -141,10 +141,9 @@ std::optional<JammedIfClosed> judge_list(const ClosedList& list, double moved) {
 IfClosed jammed_if_closed(Packing packing, std::vector<Contact> contacts) {
     constexpr int farthest_image = 3;
     const std::vector<int> rattlers = rattlers_by_coordination(packing, contacts);
-    const auto rattles = [&](int i) { return std::binary_search(rattlers.begin(), rattlers.end(), i); };
+    const auto rattles = [&](int i) { return std::ranges::binary_search(rattlers, i); };
     std::erase_if(contacts, [&](const Contact& c) { return rattles(c.i) || (c.of_disks() && rattles(c.j)); });
-    const bool held =
-        std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.kind == ContactKind::held; });
+    const bool held = std::ranges::any_of(contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
     if (contacts.empty() || held || !in_range_of_products(packing) || largest_multiple(contacts) > farthest_image) {
         return {};
     }

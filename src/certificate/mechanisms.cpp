@@ -1,6 +1,5 @@
 #include "certificate/held_minimum.hpp"
 #include "certificate/reach.hpp"
-#include "certificate/sectors.hpp"
 #include "contact/other_pairs.hpp"
 #include "core/decimal.hpp"
 #include "core/roundoff.hpp"
@@ -26,7 +25,7 @@ bool has_potential(const State& state) {
     const Cell& cell = state.packing.cell;
     return !cell.keeps_shape &&
            (state.load.kind == LoadKind::nominal ||
-            (!cell.shears() && std::all_of(forces.begin(), forces.end(), [](double force) { return force == 0; })));
+            (!cell.shears() && std::ranges::all_of(forces, [](double force) { return force == 0; })));
 }
 
 /// Signs of the forces, multipliers of what is held, and what the potential does along one mechanism. Rows that are

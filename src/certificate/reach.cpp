@@ -19,7 +19,7 @@ namespace {
 std::optional<std::string> out_of_range(const State& state) {
     constexpr double largest = 1e100;
     constexpr double smallest = 1e-100;
-    const auto [least, most] = std::minmax_element(state.packing.radius.begin(), state.packing.radius.end());
+    const auto [least, most] = std::ranges::minmax_element(state.packing.radius);
     const auto size = [](const std::vector<double>& x) {
         return std::accumulate(x.begin(), x.end(), 0.0, [](double m, double c) { return std::max(m, std::abs(c)); });
     };
@@ -58,8 +58,8 @@ double least_stretch(const Packing& packing) {
 } // namespace
 
 std::optional<std::string> beyond_claims(const State& state) {
-    const auto held = std::find_if(state.contacts.begin(), state.contacts.end(),
-                                   [](const Contact& c) { return c.kind == ContactKind::held; });
+    const auto held =
+        std::ranges::find_if(state.contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
     return held == state.contacts.end() || !state.packing.bars.empty()
                ? out_of_range(state)
                : fmt::format("the state keeps a coordinate ({}), which is not a contact",
@@ -77,7 +77,7 @@ double largest_length(const Packing& packing) {
 }
 
 bool any_far(const std::vector<Contact>& pairs) {
-    return std::any_of(pairs.begin(), pairs.end(), [](const Contact& pair) { return is_beyond(pair, farthest_image); });
+    return std::ranges::any_of(pairs, [](const Contact& pair) { return is_beyond(pair, farthest_image); });
 }
 
 std::optional<Packing> on_grid(Packing packing, const std::vector<Contact>& contacts, double& moved) {
@@ -107,6 +107,19 @@ double far_weight(const Packing& packing, double reach) {
         extent = std::hypot(extent, high - low);
     }
     return root2 + (2 * packing.max_radius() + reach + extent) / least_stretch(packing) * (1 + 1e-12);
+}
+
+std::optional<std::string> beyond_sectors(const ArcBodies& arcs, const std::vector<Contact>& contacts,
+                                          double distance) {
+    if (arcs.any() && !(distance < arcs.known_to())) {
+        return "the vertex is not known well enough to say which arcs are nearest, or arcs are no convex curve there";
+    }
+    const auto outside =
+        std::ranges::find_if(contacts, [&](const Contact& contact) { return !arcs.faces(contact, distance); });
+    return outside == contacts.end() ? std::nullopt
+                                     : std::optional(fmt::format("contact {} is not inside the arcs of its members: at "
+                                                                 "a joint, or beyond",
+                                                                 to_string(*outside)));
 }
 
 } // namespace isostat

@@ -2,6 +2,8 @@
 /// \file
 /// Of which states `certify` claims anything, and the lengths that its bounds take from a packing: private to the room.
 
+#include "packing/arc_bodies.hpp"
+
 #include <isostat/contact/state.hpp>
 
 #include <optional>
@@ -27,5 +29,9 @@ std::optional<Packing> on_grid(Packing packing, const std::vector<Contact>& cont
 /// The gap of a pair that is not among the candidates, at a distance from where they were found, is at least their
 /// `reach` minus this times the distance (proofs/cells.md, C4; V4 (d) in a box).
 double far_weight(const Packing& packing, double reach);
+
+/// Why the circles of these contacts may not be those that touch, the true vertex being `distance` (2-norm) from the
+/// packing at most; nothing: every normal is inside the sectors of both members (U9).
+std::optional<std::string> beyond_sectors(const ArcBodies& arcs, const std::vector<Contact>& contacts, double distance);
 
 } // namespace isostat

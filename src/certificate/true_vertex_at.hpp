@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace isostat {
 
@@ -113,7 +112,7 @@ template <class T> void TrueVertexAt<T>::claim_radii() {
             m += shift;
         }
     }
-    const double largest = *std::max_element(moved.begin(), moved.end());
+    const double largest = *std::ranges::max_element(moved);
     const double away = norm_of_bounds(moved);
     const double radius = above(vertex_.radius());
     claimed_radius_ = (largest + radius) * (1 + 8 * u);

@@ -2,8 +2,6 @@
 #include "cli/verify.hpp"
 #include "io/text.hpp"
 
-#include <isostat/core/result.hpp>
-
 #include <fmt/format.h>
 
 #include <array>

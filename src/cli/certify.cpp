@@ -1,7 +1,6 @@
 #include "answers/true_vertex.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/terminal.hpp"
 #include "io/files.hpp"
 
 #include <isostat/certificate/certify.hpp>

@@ -2,9 +2,14 @@
 /// \file
 /// The subcommands of `isostat`: arguments as parsed, exit status as returned.
 
+#include "crafted/genericity.hpp"
+#include "report/run_report.hpp"
+
+#include <isostat/compare/compare.hpp>
 #include <isostat/foreign/foreign.hpp>
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,11 +76,8 @@ int plan(const PlanArguments& arguments);
 struct ReportArguments {
     Common common;
     std::string input, output;
-    bool vtk = false;
-    bool pdf = false;
-    bool html = false;
+    ReportOptions options; ///< as stated, but for `charts`
     bool no_charts = false;
-    bool contacts = false;
     double stiffness = 0; ///< > 0: also the table of soft limits
 };
 int report(const ReportArguments& arguments);
@@ -149,10 +151,9 @@ int snap(const SnapArguments& arguments);
 struct CompareArguments {
     Common common;
     std::string series, output, reference;
-    std::string init; ///< a file of frames for which a manifest `series` is written
-    int bundle = 16;
+    std::string init;   ///< a file of frames for which a manifest `series` is written
     std::string frames; ///< "A:B"; empty: all
-    bool local = false, nearest_arc = false;
+    compare::CompareOptions options;
 };
 /// A series of frames against the exact run. 0: every frame at rest is the exact equilibrium; 1: a frame departs; 2:
 /// undecided, or no frame is at rest.
@@ -168,16 +169,16 @@ int export_states(const ExportArguments& arguments);
 struct GenericityArguments {
     Common common;
     std::string file, csv;
-    int samples = 100;
     std::vector<double> sizes{1e-6};
-    std::uint64_t seed = 1;
-    double stress = 1;
     int lists = 10;
-    bool keep_equal = false;
-    bool tilt = false;
+    crafted::GenericityOptions options;
 };
 /// Vertices with perturbed radii. 0: every sample proved isostatic; 2: some were not.
 int genericity(const GenericityArguments& arguments);
+
+/// Empty, or a sentence for a message: the file or folder is of a kind that this command does not take, and the
+/// commands that do. Judged by content, not by name. Throws nothing.
+std::string other_use(const std::string& command, const std::filesystem::path& file);
 
 /// "isostat 0.1.0".
 std::string program_name();

@@ -3,7 +3,6 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
-#include "cli/terminal.hpp"
 #include "io/json.hpp"
 
 #include <isostat/core/result.hpp>

@@ -3,6 +3,7 @@
 /// Functions that several subcommands share.
 
 #include "cli/commands.hpp"
+#include "cli/terminal.hpp"
 #include "contact/names.hpp"
 #include "core/decimal.hpp"
 #include "io/json.hpp"
@@ -15,7 +16,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace isostat::cli {
 

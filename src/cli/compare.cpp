@@ -3,14 +3,12 @@
 #include "cli/interrupt.hpp"
 #include "cli/ranges.hpp"
 #include "cli/read_packing.hpp"
-#include "cli/terminal.hpp"
 #include "compare/manifest.hpp"
 #include "compare/report.hpp"
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 
-#include <isostat/compare/compare.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
@@ -40,13 +38,12 @@ void begin_manifest(const CompareArguments& a) {
     const std::filesystem::path manifest = a.series, folder = manifest.parent_path();
     const std::filesystem::path disks = std::filesystem::path(a.init).lexically_proximate(folder);
     if (disks.is_absolute() || (!disks.empty() && *disks.begin() == "..")) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--init is '{}': expected a file beside {} or below", a.init, a.series));
+        refuse(ErrorKind::usage, "--init is '{}': expected a file beside {} or below", a.init, a.series);
     }
     const std::string frames = manifest.stem().string() + ".frames.csv";
     for (const std::filesystem::path& file : {manifest, folder / frames}) {
         if (std::filesystem::exists(std::filesystem::symlink_status(file))) {
-            throw Error(ErrorKind::usage, fmt::format("{} exists: expected a new name", file.string()));
+            refuse(ErrorKind::usage, "{} exists: expected a new name", file.string());
         }
     }
     const compare::BegunSeries begun = compare::begin_series(a.init, disks.string(), frames);
@@ -105,8 +102,8 @@ void print_bundle(const compare::Bundle& bundle) {
 /// Prints the loads on both sides of the departure, and the limits of the exact run between them.
 void print_loads(const compare::Comparison& comparison, const compare::Departure& departure) {
     const auto load = [&](int number) {
-        const auto at = std::find_if(comparison.frames.begin(), comparison.frames.end(),
-                                     [&](const compare::FrameResult& f) { return f.frame == number; });
+        const auto at =
+            std::ranges::find_if(comparison.frames, [&](const compare::FrameResult& f) { return f.frame == number; });
         return at == comparison.frames.end() ? comparison.frames.front().stress : at->stress;
     };
     const double from = load(departure.from), to = load(departure.to);
@@ -161,18 +158,14 @@ int compare_series(const CompareArguments& a) {
     if (!a.output.empty()) {
         check_folder_for(a.output, comparison_folder);
     }
-    compare::CompareOptions options;
-    options.bundle = a.bundle;
-    options.local = a.local;
-    options.nearest_arc = a.nearest_arc;
+    compare::CompareOptions options = a.options;
     if (!a.frames.empty()) {
         const std::vector<std::string> ends = parse_list(a.frames, ':');
         const auto frame = [](const std::string& word) {
             return ranges::integer_in(word, 0, std::numeric_limits<int>::max()).value_or(-1);
         };
         if (ends.size() != 2 || frame(ends[0]) < 0 || frame(ends[1]) < frame(ends[0])) {
-            throw Error(ErrorKind::usage,
-                        fmt::format("--frames is '{}': expected A:B, two integers with 0 <= A <= B", a.frames));
+            refuse(ErrorKind::usage, "--frames is '{}': expected A:B, two integers with 0 <= A <= B", a.frames);
         }
         options.frames = {static_cast<int>(frame(ends[0])), static_cast<int>(frame(ends[1]))};
     }
@@ -192,7 +185,7 @@ int compare_series(const CompareArguments& a) {
         return interrupted;
     }
     if (comparison.frames.empty()) {
-        throw Error(ErrorKind::usage, fmt::format("--frames is '{}': {} has no such frame", a.frames, a.series));
+        refuse(ErrorKind::usage, "--frames is '{}': {} has no such frame", a.frames, a.series);
     }
     std::string note;
     if (!a.output.empty()) {

@@ -2,21 +2,18 @@
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
-#include "cli/terminal.hpp"
 #ifdef ISOSTAT_WITH_MPI
 #include "cli/mpi/sample_queue.hpp"
 #endif
 
+#include "core/refuse.hpp"
 #include "ensemble/ensemble.hpp"
 #include "ensemble/processes.hpp"
 #include "io/files.hpp"
 
-#include <isostat/core/result.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -98,7 +95,8 @@ class Board {
                 "elapsed", "rest");
         }
         say("{:>8} {:<12} {:>10} {:>8} {:>9.2f} {:>8} {:>8} {}\n", sample.seed, to_string(sample.status),
-            sample.equilibria, sample.arcs, sample.seconds, clock_text(elapsed()), clock_text(rest()), sample.reason);
+            sample.equilibria, sample.arcs, sample.seconds, clock_text(pace_.elapsed()), clock_text(rest()),
+            sample.reason);
         std::fflush(stdout);
     }
     /// Counts a sample finished in an earlier call.
@@ -111,29 +109,23 @@ class Board {
         }
         line_.show(fmt::format("{} of {} samples done{}{}, running{}, elapsed {}, rest {}", found_ + done_,
                                folders_.header().samples, failed_ > 0 ? fmt::format(", {} failed", failed_) : "",
-                               broken_ > 0 ? fmt::format(", {} broken off", broken_) : "", seeds, clock_text(elapsed()),
-                               clock_text(rest())));
+                               broken_ > 0 ? fmt::format(", {} broken off", broken_) : "", seeds,
+                               clock_text(pace_.elapsed()), clock_text(rest())));
     }
     void clear() { line_.clear(); }
 
   private:
-    [[nodiscard]] double elapsed() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    }
     /// Estimate from the mean time of ended samples; running ones count as half done.
     [[nodiscard]] double rest() const {
-        if (done_ == 0) {
-            return -1;
-        }
         const int open = folders_.header().samples - found_ - done_;
         const double half = std::min(0.5 * workers_, 0.5 * open);
-        return elapsed() / (done_ + half) * (open - half);
+        return done_ == 0 ? -1 : pace_.rest(done_ + half, open - half);
     }
     const SampleFolders& folders_;
     int workers_;
     bool quiet_;
     StatusLine line_;
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    Pace pace_;
     std::set<std::size_t> running_;
     int done_ = 0;
     int found_ = 0;
@@ -178,7 +170,7 @@ int default_jobs(int ranks) {
 
 int exit_status(const std::vector<Sample>& samples) {
     const auto any = [&](SampleStatus status) {
-        return std::any_of(samples.begin(), samples.end(), [&](const Sample& s) { return s.status == status; });
+        return std::ranges::any_of(samples, [&](const Sample& s) { return s.status == status; });
     };
     if (any(SampleStatus::interrupted) || any(SampleStatus::missing)) {
         return interrupted;
@@ -276,8 +268,7 @@ int ensemble(const EnsembleArguments& arguments) {
     try {
         const Scene scene = read_scene(arguments.scene);
         if (scene.programme.empty()) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: has no [[programme]]: expected at least one segment to run", arguments.scene));
+            refuse(arguments.scene, "has no [[programme]]: expected at least one segment to run");
         }
         header.scene_text = scene.text;
         catch_interrupts();

@@ -1,19 +1,17 @@
 #include "certificate/averages.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/terminal.hpp"
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 #include "report/picture.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <filesystem>
 
 namespace isostat::cli {
@@ -43,9 +41,8 @@ std::string format_of(const ExportArguments& a) {
             return format;
         }
     }
-    throw Error(
-        ErrorKind::usage,
-        fmt::format("--output is '{}': expected a name that ends in .data, .xyz, .csv or .vtk, or --format", a.output));
+    refuse(ErrorKind::usage, "--output is '{}': expected a name that ends in .data, .xyz, .csv or .vtk, or --format",
+           a.output);
 }
 
 /// The stored states of a run in their order, or the one state.
@@ -60,8 +57,7 @@ std::vector<fs::path> states_of(const std::string& input) {
         }
     }
     if (files.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: has no states/eq_*.json: expected the folder of a run, or a state", input));
+        refuse(input, "has no states/eq_*.json: expected the folder of a run, or a state");
     }
     return files;
 }

@@ -2,20 +2,14 @@
 
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/terminal.hpp"
 #include "io/files.hpp"
 
 namespace isostat::cli {
 
 int genericity(const GenericityArguments& a) {
     check_output(a.csv, answers::genericity_head, {a.file});
-    answers::GenericityAnswer answer{a.file, answers::read_original(a.file), {}, static_cast<std::size_t>(a.lists)};
-    crafted::GenericityOptions& options = answer.options;
-    options.samples = a.samples;
-    options.seed = a.seed;
-    options.stress = a.stress;
-    options.keep_equal = a.keep_equal;
-    options.tilt = a.tilt;
+    answers::GenericityAnswer answer{a.file, answers::read_original(a.file), a.options,
+                                     static_cast<std::size_t>(a.lists)};
     const bool text = !a.common.json;
     if (text) {
         say_lines(answers::head_text(answer));
@@ -25,10 +19,10 @@ int genericity(const GenericityArguments& a) {
     std::vector<crafted::Genericity> all;
     bool every = true;
     for (const double size : a.sizes) {
-        options.size = size;
-        all.push_back(crafted::genericity(answer.original.packing, answer.original.contacts, options));
+        answer.options.size = size;
+        all.push_back(crafted::genericity(answer.original.packing, answer.original.contacts, answer.options));
         const crafted::Genericity& result = all.back();
-        every = every && result.proved == a.samples;
+        every = every && result.proved == a.options.samples;
         csv += answers::csv_rows(result, size);
         if (text) {
             say_lines(answers::row_text(result, size));

@@ -2,7 +2,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
-#include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/lines.hpp"
@@ -79,41 +78,33 @@ bool as_listed(const ImportArguments& a, const Packing& packing) {
 Imported from_list(const ImportArguments& a, const ForeignPacking& file) {
     const bool digits = by_digits(file.packing);
     if (a.jitter != 0 || (digits ? !a.contacts.empty() : a.contacts == "nearest")) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("{} is a packing of {}: expected no --jitter and no --contacts{} (--threshold T lists "
-                                "the pairs with that gap or less)",
-                                a.file,
-                                !file.packing.bars.empty() ? "clumps"
-                                : digits                   ? "spheres"
-                                                           : "disks in walls or a cell that stays",
-                                digits ? ", which are of disks so far" : " nearest"));
+        refuse(ErrorKind::usage,
+               "{} is a packing of {}: expected no --jitter and no --contacts{} (--threshold T lists the pairs with "
+               "that gap or less)",
+               a.file,
+               !file.packing.bars.empty() ? "clumps"
+               : digits                   ? "spheres"
+                                          : "disks in walls or a cell that stays",
+               digits ? ", which are of disks so far" : " nearest");
     }
     Imported out;
     out.from = file.packing.q;
     compare::SoftState listed{file.packing, {}, load_of(a, file.packing)};
-    std::string words;
-    if (digits || a.threshold) {
-        compare::WantedList list = compare::list_up_to(file.packing, a.threshold.value_or(file.rounding));
-        listed.contacts = std::move(list.contacts);
-        words = list.words + (a.threshold ? "" : ", which the digits of the file leave open");
-    } else if (a.contacts == "plateau") {
-        compare::WantedList list = compare::list_of_plateau(file.packing, file.rounding);
-        listed.contacts = std::move(list.contacts);
-        words = std::move(list.words);
-    } else {
-        compare::SoftList list = stated_list(a.file, file, a.foreign.frame, a.contacts, a.contact_columns);
-        listed.contacts = std::move(list.contacts);
-        words = std::move(list.words);
-    }
+    compare::SoftList list =
+        digits || a.threshold     ? compare::list_up_to(file.packing, a.threshold.value_or(file.rounding))
+        : a.contacts == "plateau" ? compare::list_of_plateau(file.packing, file.rounding)
+                                  : stated_list(a.file, file, a.foreign.frame, a.contacts, a.contact_columns);
+    list.words += digits && !a.threshold ? ", which the digits of the file leave open" : "";
+    listed.contacts = std::move(list.contacts);
     out.as_listed = true;
     out.held = !digits;
     if (out.held) {
         out.state.packing = file.packing;
         out.state.contacts = std::move(listed.contacts);
         out.state.load = listed.load;
-        out.contacts = fmt::format("{}, {}", out.state.contacts.size(), words);
+        out.contacts = fmt::format("{}, {}", out.state.contacts.size(), list.words);
     } else {
-        static_cast<compare::NearestVertex&>(out) = compare::vertex_as_listed(listed, words, a.seed);
+        static_cast<compare::NearestVertex&>(out) = compare::vertex_as_listed(listed, list.words, a.seed);
     }
     return out;
 }
@@ -125,7 +116,7 @@ Result<Imported> from_foreign(const ImportArguments& a, ForeignPacking& file) {
     if (as_listed(a, file.packing)) {
         return from_list(a, file);
     }
-    std::optional<compare::WantedList> wanted;
+    std::optional<compare::SoftList> wanted;
     if (a.threshold || a.contacts == "plateau") {
         auto below = compare::list_below(file.packing, a.threshold, file.rounding);
         if (!below.ok()) {
@@ -133,8 +124,7 @@ Result<Imported> from_foreign(const ImportArguments& a, ForeignPacking& file) {
         }
         wanted = std::move(below.value());
     } else if (a.contacts != "nearest") {
-        compare::SoftList list = stated_list(a.file, file, a.foreign.frame, a.contacts, a.contact_columns);
-        wanted = {std::move(list.contacts), std::move(list.words)};
+        wanted = stated_list(a.file, file, a.foreign.frame, a.contacts, a.contact_columns);
     }
     Imported out;
     out.from = file.packing.q;
@@ -185,9 +175,8 @@ ForeignPacking read_imported(ImportArguments& a, bool crafted, bool own) {
         refuse(a.file, "is a state of spheres: expected one of disks, which --jitter takes only so far");
     }
     if (crafted && !a.cell.empty()) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--cell is '{}' and {} is a crafted packing, which says what moves: expected no --cell",
-                                a.cell, a.file));
+        refuse(ErrorKind::usage,
+               "--cell is '{}' and {} is a crafted packing, which says what moves: expected no --cell", a.cell, a.file);
     }
     if (file.packing.cell.any() && !crafted) {
         set_cell(a, own, file.packing);
@@ -282,9 +271,8 @@ void judge_moves(const ImportArguments& a, const Imported& found, const compare:
     }
     const std::string words = fmt::format("disk {} moved by {} of its radius", disk, rounded_up(radii, 3));
     if (radii > 1 && !a.far && std::isfinite(radii)) {
-        refuse(a.file, words +
-                           ": expected at most one on the way to the vertex (are the sizes wrong by a factor, or the "
-                           "box? --far takes it)");
+        refuse(a.file, words + ": expected at most one on the way to the vertex (are the sizes wrong by a factor, or "
+                               "the box? --far takes it)");
     }
     if (radii > far) {
         notes.push_back(words + ", more than a tenth: the vertex may not be that of the file");
@@ -358,7 +346,7 @@ void print_import(const ImportArguments& a, const ForeignPacking& file, const Im
     for (const std::string& note : file.notes) {
         say("          {}\n", note);
     }
-    const auto rattlers = std::count(moves.rattler.begin(), moves.rattler.end(), 1);
+    const auto rattlers = std::ranges::count(moves.rattler, 1);
     say("contacts  {}\n", found.contacts);
     if (found.held) {
         say("written   {}: {} disks, {} rattlers by coordination, {} contacts, solid fraction {:.6f}; nothing moves "
@@ -382,7 +370,7 @@ void print_import(const ImportArguments& a, const ForeignPacking& file, const Im
     }
     say("{:<9} {}: {} {}, {} contacts, solid fraction {:.6f}{}\n", to_string(found.verdict()), a.output,
         state.packing.disk_count(), grains_of(state.packing),
-        std::count_if(state.contacts.begin(), state.contacts.end(), [](const Contact& c) { return c.is_unilateral(); }),
+        std::ranges::count_if(state.contacts, [](const Contact& c) { return c.is_unilateral(); }),
         state.packing.solid_fraction(),
         found.untold.any()
             ? fmt::format("; {}; {} of the stored doubles", found.untold.words(), to_string(found.truth.verdict))
@@ -421,8 +409,8 @@ std::string advice(const ImportArguments& a, bool crafted, const Packing& packin
         return "; isostat inspect says of exact numbers (a packing in TOML) whether they are jammed";
     }
     std::vector<double> radius = packing.radius;
-    std::sort(radius.begin(), radius.end());
-    const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
+    std::ranges::sort(radius);
+    const bool equal = std::ranges::adjacent_find(radius) != radius.end();
     std::string out = a.contacts == "nearest" || crafted || a.contacts.empty()
                           ? ""
                           : "; --contacts nearest takes the vertex downhill whatever its contacts";
@@ -439,9 +427,8 @@ void require_importable(const ImportArguments& a, bool own, bool crafted) {
     }
     if (crafted && a.jitter != 0) {
         refuse(a.file,
-               fmt::format("is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, "
-                           "it is {}",
-                           a.jitter));
+               "is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, it is {}",
+               a.jitter);
     }
 }
 

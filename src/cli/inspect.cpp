@@ -2,11 +2,10 @@
 #include "certificate/contact_table.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/terminal.hpp"
+#include "core/refuse.hpp"
 #include "crafted/enclosed_bases.hpp"
 #include "io/files.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/state_file.hpp>
 
@@ -22,7 +21,7 @@ int inspect_packing(const InspectArguments& arguments) {
     const crafted::PackingFile file = crafted::read_packing(arguments.file);
     const Result<crafted::Inspection> result = crafted::inspect_file(file, arguments.file);
     if (!result.ok()) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: {}", arguments.file, result.failure().message()));
+        refuse(arguments.file, result.failure().message());
     }
     const crafted::Inspection& inspection = result.value();
     if (arguments.common.json) {

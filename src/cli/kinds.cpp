@@ -1,5 +1,4 @@
-#include "cli/kinds.hpp"
-
+#include "cli/commands.hpp"
 #include "io/files.hpp"
 
 #include <isostat/core/result.hpp>
@@ -10,7 +9,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <optional>
 #include <regex>
 #include <string_view>
 #include <vector>
@@ -98,7 +96,7 @@ const Kind* kind_of(const fs::path& file) {
 
 std::string other_use(const std::string& command, const fs::path& file) {
     const Kind* const kind = kind_of(file);
-    if (kind == nullptr || std::find(kind->commands.begin(), kind->commands.end(), command) != kind->commands.end()) {
+    if (kind == nullptr || std::ranges::find(kind->commands, command) != kind->commands.end()) {
         return "";
     }
     return fmt::format("{} is {}: for isostat {}, not for {}{}", file.string(), kind->words,

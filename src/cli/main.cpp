@@ -1,7 +1,6 @@
 // The command line: options go into plain structures, and one function per subcommand does the work.
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/kinds.hpp"
 #include "cli/manual.hpp"
 #include "cli/ranges.hpp"
 #include "cli/terminal.hpp"
@@ -260,12 +259,12 @@ Examples: isostat report out
                "folder of the figures (default: DIR/figures, or the folder of the state); of an ensemble: a folder in "
                "it per seed",
                "DIR");
-        command.add_flag("--vtk", a.vtk, "also write ParaView files");
-        command.add_flag("--pdf", a.pdf, "charts as PDF too");
-        command.add_flag("--html", a.html,
+        command.add_flag("--vtk", a.options.vtk, "also write ParaView files");
+        command.add_flag("--pdf", a.options.pdf, "charts as PDF too");
+        command.add_flag("--html", a.options.html,
                          "of a run: also write trajectory.html, one page to look at every equilibrium and arc, without "
                          "network; of a state of spheres: a view that turns");
-        command.add_flag("--contacts", a.contacts,
+        command.add_flag("--contacts", a.options.contacts,
                          "also contacts_*.csv of each stored state: points, normals, gaps, proved forces");
         command.add_flag("--no-charts", a.no_charts, "do not call gnuplot");
         option(command, "--stiffness", a.stiffness,
@@ -475,14 +474,14 @@ Examples: isostat compare series.toml --init disks.dump
                "start of the exact run: a state, or equilibrium 0 of the folder of a run (default: the vertex of the "
                "first frame that has one)",
                "STATE|DIR");
-        option(command, "--bundle", a.bundle,
+        option(command, "--bundle", a.options.bundle,
                "exact runs from the start: other rules of opening, rattlers that rest elsewhere (default 16; 0: none)",
                ranges::integer(0, 10'000));
         command.add_flag(
-            "--local", a.local,
+            "--local", a.options.local,
             "besides, the exact run from every frame to the next one: a score that a departure does not spoil");
         command.add_flag(
-            "--nearest-arc", a.nearest_arc,
+            "--nearest-arc", a.options.nearest_arc,
             "besides, the arc of the exact run whose contacts are nearest to those of each frame in motion");
         option(command, "--frames", a.frames, "the frames from A to B only, by their numbers from 0 (default: all)",
                "A:B");
@@ -520,18 +519,21 @@ Examples: isostat genericity examples/packings/square_lattice_3.toml --samples 2
         needed(command, "packing", a.file,
                "crafted packing (TOML), state or vertex text, in a box with movable walls or a cell whose periods move",
                "FILE");
-        option(command, "--samples", a.samples, "samples per size (default 100)", ranges::integer(1, 1'000'000'000));
+        option(command, "--samples", a.options.samples, "samples per size (default 100)",
+               ranges::integer(1, 1'000'000'000));
         option(command, "--size", a.sizes, "largest relative change of a radius; several: 1e-2,1e-6 (default 1e-6)",
                ranges::number(0, 1))
             ->delimiter(',');
-        option(command, "--seed", a.seed, "sample s uses seed + s (default 1)",
+        option(command, "--seed", a.options.seed, "sample s uses seed + s (default 1)",
                ranges::integer(0, ranges::largest_seed));
-        option(command, "--stress", a.stress, "isotropic stress (default 1)",
+        option(command, "--stress", a.options.stress, "isotropic stress (default 1)",
                ranges::number(ranges::smallest, ranges::largest));
         option(command, "--lists", a.lists, "frequent contact lists to show (default 10)",
                ranges::integer(0, 1'000'000'000));
-        command.add_flag("--keep-equal", a.keep_equal, "disks of equal radius stay equal, and members in their places");
-        command.add_flag("--tilt", a.tilt, "perturb the tilt of the cell too, by size u times its first period");
+        command.add_flag("--keep-equal", a.options.keep_equal,
+                         "disks of equal radius stay equal, and members in their places");
+        command.add_flag("--tilt", a.options.tilt,
+                         "perturb the tilt of the cell too, by size u times its first period");
         option(command, "--csv", a.csv, "write one row per sample to this file", "FILE.csv");
         add_threads(command, a.common);
         does(command, a, genericity, false);
@@ -588,8 +590,8 @@ std::string wrong_command(const CLI::App& app, const std::string& word) {
     }
     const std::vector<const CLI::App*> commands = app.get_subcommands([](const CLI::App*) { return true; });
     const auto far = [&word](const CLI::App* command) { return difference(word, command->get_name()); };
-    const CLI::App* near = *std::min_element(commands.begin(), commands.end(),
-                                             [&](const auto* a, const auto* b) { return far(a) < far(b); });
+    const CLI::App* near =
+        *std::ranges::min_element(commands, [&](const auto* a, const auto* b) { return far(a) < far(b); });
     if (far(near) == 0) {
         return "";
     }

@@ -67,23 +67,6 @@ std::string synopsis(const CLI::App& command) {
     return text + (optional ? " [options]\n" : "\n");
 }
 
-} // namespace
-
-std::string man_page(const CLI::App& app, const std::string& version) {
-    std::string text = fmt::format(".TH ISOSTAT 1 \"\" \"{}\" \"User Commands\"\n.SH NAME\nisostat \\- {}\n", version,
-                                   text::man(app.get_description()));
-    text += ".SH SYNOPSIS\n\\fBisostat\\fR \\fICOMMAND\\fR [options]\n.SH OPTIONS\n" + options_text(app);
-    text += ".SH COMMANDS\n";
-    for (const CLI::App* command : commands_of(app)) {
-        text += fmt::format(".SS {0}\n{1}.PP\n{2}.\n.PP\n.nf\n{3}\n.fi\n{4}", text::man(command->get_name()),
-                            synopsis(*command), text::man(command->get_description()), text::man(command->get_footer()),
-                            options_text(*command));
-    }
-    return text + fmt::format(".SH EXIT STATUS\n.nf\n{}\n.fi\n", text::man(app.get_footer()));
-}
-
-namespace {
-
 /// " --output -o": each name behind the mark of long or of short ones.
 std::string names_of(const CLI::Option& option, const std::string& before_long = " --",
                      const std::string& before_short = " -") {
@@ -105,7 +88,7 @@ std::string values_of(const CLI::Option& option) {
         return "";
     }
     std::string words = type.substr(begin + 1, end - begin - 1);
-    std::replace(words.begin(), words.end(), ',', ' ');
+    std::ranges::replace(words, ',', ' ');
     return words;
 }
 
@@ -160,6 +143,19 @@ std::string fish_completion(const CLI::App& app) {
 }
 
 } // namespace
+
+std::string man_page(const CLI::App& app, const std::string& version) {
+    std::string text = fmt::format(".TH ISOSTAT 1 \"\" \"{}\" \"User Commands\"\n.SH NAME\nisostat \\- {}\n", version,
+                                   text::man(app.get_description()));
+    text += ".SH SYNOPSIS\n\\fBisostat\\fR \\fICOMMAND\\fR [options]\n.SH OPTIONS\n" + options_text(app);
+    text += ".SH COMMANDS\n";
+    for (const CLI::App* command : commands_of(app)) {
+        text += fmt::format(".SS {0}\n{1}.PP\n{2}.\n.PP\n.nf\n{3}\n.fi\n{4}", text::man(command->get_name()),
+                            synopsis(*command), text::man(command->get_description()), text::man(command->get_footer()),
+                            options_text(*command));
+    }
+    return text + fmt::format(".SH EXIT STATUS\n.nf\n{}\n.fi\n", text::man(app.get_footer()));
+}
 
 std::string shell_completion(const CLI::App& app, const std::string& shell) {
     if (shell == "fish") {

@@ -1,10 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/terminal.hpp"
 
 #include <fmt/format.h>
-
-#include <cstdio>
 
 namespace isostat::cli {
 

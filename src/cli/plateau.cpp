@@ -3,7 +3,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
-#include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "snap/soft_list.hpp"
 
@@ -36,9 +35,8 @@ double rounding_of(const std::string& box) {
 /// Notes on walls that may hide the range.
 void note_walls(const PlateauArguments& a, const crafted::Plateau& plateau, ForeignPacking& file) {
     const double rounding = rounding_of(a.foreign.box);
-    const bool wide =
-        std::any_of(plateau.ranges.begin(), plateau.ranges.end(),
-                    [&](const crafted::PlateauRange& range) { return range.last - range.first > rounding; });
+    const bool wide = std::ranges::any_of(
+        plateau.ranges, [&](const crafted::PlateauRange& range) { return range.last - range.first > rounding; });
     if (const std::string far = compare::far_wall(file.packing); !far.empty()) {
         file.notes.push_back(far);
     } else if (rounding > 0 && !wide) {
@@ -77,7 +75,7 @@ int plateau(const PlateauArguments& a) {
     ForeignPacking file = read_any_packing(a.file, foreign);
     const Strain strain = value_of(a.strain, words_of<Strain>("fixed", "isotropic", "diagonal", "full")).value();
     const crafted::Plateau result = counts_of(file, a, strain, thresholds);
-    const crafted::Told told = crafted::told_of(result);
+    const answers::Told told = answers::told_of(result);
     note_walls(a, result, file);
     if (const std::string sizes = compare::far_disks(file.packing, thresholds[1], result); !sizes.empty()) {
         file.notes.push_back(sizes);

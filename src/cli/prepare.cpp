@@ -1,10 +1,9 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/terminal.hpp"
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
@@ -27,10 +26,9 @@ void check_writable(const PrepareArguments& a) {
 int prepare(const PrepareArguments& arguments) {
     const Scene scene = read_scene(arguments.scene);
     if (!scene.start.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: file in [packing] is {}: there is nothing to prepare, expected disks, radii or "
-                                "radii_file, or spheres",
-                                arguments.scene, scene.start.string()));
+        refuse(arguments.scene,
+               "file in [packing] is {}: there is nothing to prepare, expected disks, radii or radii_file, or spheres",
+               scene.start.string());
     }
     check_writable(arguments);
     catch_interrupts();

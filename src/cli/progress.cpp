@@ -103,9 +103,8 @@ void RunTable::on_equilibrium(const EquilibriumRecord& record, const State& stat
     if (quiet_) {
         return;
     }
-    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     const double ratio = record.stress / record.sigma1;
-    const double rest = here_ == 0 ? NAN : elapsed / here_ * remaining(ratio);
+    const double rest = pace_.rest(here_, remaining(ratio));
     line_.clear();
     say("{:>7} {:>13.9f} {:>12.5e} {:>6} {:>2} {:>8.1e} {:<13} {:>8} {:>8}\n", record.number, ratio,
         record.strain[static_cast<std::size_t>(state.load.loaded_axis)], record.arcs, record.hyperstaticity,

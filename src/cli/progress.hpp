@@ -31,6 +31,19 @@ class StatusLine {
 /// "1:02:03".
 std::string clock_text(double seconds);
 
+/// Time since construction, and the time that is left at the pace until now.
+class Pace {
+  public:
+    [[nodiscard]] double elapsed() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    }
+    /// \p left: in the unit of `done`. Negative, which `clock_text` does not know, where nothing is done.
+    [[nodiscard]] double rest(double done, double left) const { return done > 0 ? elapsed() / done * left : -1; }
+
+  private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
 /// Prints one row per equilibrium: number, ratio, strain, arcs, h, smallest margin, precision used, elapsed,
 /// estimated rest.
 class RunTable final : public RunObserver {
@@ -48,7 +61,7 @@ class RunTable final : public RunObserver {
     const std::vector<ProgrammeStep>& programme_;
     bool quiet_;
     StatusLine line_;
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    Pace pace_;
     int segment_ = 0;
     int made_ = 0; ///< in this segment
     int here_ = 0; ///< equilibria made by this process

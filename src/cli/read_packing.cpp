@@ -1,12 +1,12 @@
 #include "cli/read_packing.hpp"
 
 #include "cli/ranges.hpp"
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/numbers.hpp"
 #include "io/vertex_text.hpp"
 #include "snap/untold.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/foreign/foreign.hpp>
@@ -26,7 +26,7 @@ namespace {
 constexpr std::int64_t most_frames = 1'000'000'000'000'000;
 
 [[noreturn]] void usage(const std::string& option, const std::string& value, const std::string& expected) {
-    throw Error(ErrorKind::usage, fmt::format("{} is '{}': expected {}", option, value, expected));
+    refuse(ErrorKind::usage, "{} is '{}': expected {}", option, value, expected);
 }
 
 double number_of(const std::string& option, const std::string& text, const std::string& word,
@@ -59,8 +59,7 @@ SizeStatement size_of(const std::string& option, const std::string& text, SizeMe
             out.of_word.emplace_back(words[0], number_of(option, text, words[1], expected));
         }
     }
-    const bool positive =
-        std::all_of(out.of_word.begin(), out.of_word.end(), [](const auto& w) { return w.second > 0; });
+    const bool positive = std::ranges::all_of(out.of_word, [](const auto& w) { return w.second > 0; });
     if (!positive || (out.column.empty() && !(out.value > 0))) {
         usage(option, text, expected);
     }
@@ -82,7 +81,7 @@ std::optional<RowsWith> rows_of(const std::string& option, const std::string& te
 ForeignOptions options_of(const ForeignArguments& a) {
     ForeignOptions out = a.options;
     const std::vector<std::string>& formats = foreign_formats();
-    if (!out.format.empty() && std::find(formats.begin(), formats.end(), out.format) == formats.end()) {
+    if (!out.format.empty() && std::ranges::find(formats, out.format) == formats.end()) {
         usage("--format", out.format, fmt::format("one of {}", fmt::join(formats, ", ")));
     }
     if (!a.radius.empty() || !a.diameter.empty()) {
@@ -179,11 +178,11 @@ ForeignPacking read_any_packing(const std::string& file, const ForeignArguments&
         !options.columns.empty() || !options.bodies.empty() || options.frame || options.not_periodic ||
         options.periodic || options.fixed || options.skip > 0 || !options.lattice.empty() || options.first_id ||
         !options.style.empty() || options.plane != "xy") {
-        throw Error(ErrorKind::usage, fmt::format("{} is a {} file of isostat, which says all of its sizes and walls: "
-                                                  "expected none of --radius, --diameter, --walls, --box, --lattice, "
-                                                  "--frame, --dimension, --columns, --skip, --style, --plane, --ids, "
-                                                  "--select, --fixed, --bodies, --periodic, --not-periodic",
-                                                  file, format));
+        refuse(ErrorKind::usage,
+               "{} is a {} file of isostat, which says all of its sizes and walls: expected none of --radius, "
+               "--diameter, --walls, --box, --lattice, --frame, --dimension, --columns, --skip, --style, --plane, "
+               "--ids, --select, --fixed, --bodies, --periodic, --not-periodic",
+               file, format);
     }
     if (format == "packing") {
         const crafted::PackingFile crafted = crafted::parse_packing(text, file);

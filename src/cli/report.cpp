@@ -4,17 +4,14 @@
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
-#include "cli/terminal.hpp"
-#include "ensemble/members.hpp"
-#include "report/run_report.hpp"
+#include "core/refuse.hpp"
+#include "ensemble/ensemble.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
@@ -23,16 +20,6 @@ namespace isostat::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-ReportOptions options_of(const ReportArguments& arguments) {
-    ReportOptions options;
-    options.vtk = arguments.vtk;
-    options.charts = !arguments.no_charts;
-    options.html = arguments.html;
-    options.pdf = arguments.pdf;
-    options.contacts = arguments.contacts;
-    return options;
-}
 
 Json json_of(const std::string& input, const ReportResult& result) {
     Json object;
@@ -59,7 +46,7 @@ std::string totals(const Member& member, const ReportResult& result) {
     for (const EquilibriumRow& row : rows) {
         arcs += row.arcs;
     }
-    const auto proved = std::count_if(rows.begin(), rows.end(), [](const EquilibriumRow& row) { return row.proved; });
+    const auto proved = std::ranges::count_if(rows, [](const EquilibriumRow& row) { return row.proved; });
     const EquilibriumRow last = rows.empty() ? EquilibriumRow{} : rows.back();
     return fmt::format("{:>8} {:>11} {:>7} {:>8} {:>12.8f} {:>12.5e} {:>6}", member.seed, rows.size(), proved, arcs,
                        last.ratio, last.strain2, result.files.size());
@@ -69,29 +56,27 @@ std::string totals(const Member& member, const ReportResult& result) {
 int report_ensemble(const ReportArguments& arguments) {
     const std::vector<Member> members = members_of(arguments.input);
     const bool quiet = arguments.common.json || arguments.common.quiet;
-    ReportOptions options = options_of(arguments);
+    ReportOptions options = arguments.options;
+    options.charts = !arguments.no_charts;
     StatusLine line(quiet);
     Json list = Json::array();
     std::vector<fs::path> reported;
     int status = done;
-    const auto begin = std::chrono::steady_clock::now();
+    const Pace pace;
     if (!quiet) {
         say("{:>8} {:>11} {:>7} {:>8} {:>12} {:>12} {:>6}\n", "seed", "equilibria", "proved", "arcs", "ratio at end",
             "eps2", "files");
     }
     for (std::size_t k = 0; k < members.size(); ++k) {
         const Member& member = members[k];
-        const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        const double rest = k == 0 ? -1 : elapsed / static_cast<double>(k) * static_cast<double>(members.size() - k);
+        const double rest = pace.rest(static_cast<double>(k), static_cast<double>(members.size() - k));
         line.show(fmt::format("seed {}, {} of {}, {} left", member.seed, k + 1, members.size(), clock_text(rest)));
         const fs::path output = arguments.output.empty() ? member.folder / "figures"
                                                          : fs::path(arguments.output) / member.folder.filename();
         try {
             if (!member.begun) {
-                throw Error(
-                    ErrorKind::bad_input,
-                    fmt::format("was not begun{}: `isostat ensemble --resume`",
-                                member.further > 0 ? fmt::format(", nor were {} after it", member.further) : ""));
+                refuse(ErrorKind::bad_input, "was not begun{}: `isostat ensemble --resume`",
+                       member.further > 0 ? fmt::format(", nor were {} after it", member.further) : "");
             }
             const ReportResult result = report_run(member.folder, output, options);
             line.clear();
@@ -136,14 +121,14 @@ int report(const ReportArguments& arguments) {
     }
     const bool is_run = fs::is_directory(input);
     if (arguments.stiffness > 0 && !is_run) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--stiffness belongs to the folder of a run: {} is none", arguments.input));
+        refuse(ErrorKind::usage, "--stiffness belongs to the folder of a run: {} is none", arguments.input);
     }
     fs::path output = arguments.output;
     if (output.empty()) {
         output = is_run ? input / "figures" : input.has_parent_path() ? input.parent_path() : fs::path(".");
     }
-    ReportOptions options = options_of(arguments);
+    ReportOptions options = arguments.options;
+    options.charts = !arguments.no_charts;
     StatusLine line(arguments.common.json || arguments.common.quiet);
     options.progress = [&line](std::size_t done, std::size_t all) {
         line.show(fmt::format("trajectory.html: arc {} of {}", done, all));

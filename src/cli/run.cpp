@@ -2,13 +2,12 @@
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
-#include "cli/terminal.hpp"
+#include "core/refuse.hpp"
 #include "core/work.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "report/run_report.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>
@@ -93,7 +92,7 @@ void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {
     }
     say_lines("\n" + report.text + "\n");
     for (const std::string& note : report.notes) {
-        if (std::count(directory.notes().begin(), directory.notes().end(), note) == 0) {
+        if (std::ranges::count(directory.notes(), note) == 0) {
             say("{}\n", note);
         }
     }
@@ -132,8 +131,7 @@ void complain(const RunArguments& arguments, const SceneEnding& ending, const st
 int run(const RunArguments& arguments) {
     const Scene scene = read_scene(arguments.scene);
     if (scene.programme.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: has no [[programme]]: expected at least one segment to run", arguments.scene));
+        refuse(arguments.scene, "has no [[programme]]: expected at least one segment to run");
     }
     const bool quiet = arguments.common.quiet || arguments.common.json;
     std::optional<State> from_file;

@@ -2,7 +2,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
-#include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "packing/words.hpp"
@@ -16,7 +15,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace isostat::cli {
@@ -53,9 +51,8 @@ Read from_foreign(const SnapArguments& a) {
     foreign.options.cells = foreign.spheres = true;
     foreign.walls = foreign.walls.empty() ? "box" : foreign.walls;
     if (foreign.walls != "box") {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--walls is '{}': expected box, a fixed lower and a movable upper wall along each axis",
-                                foreign.walls));
+        refuse(ErrorKind::usage,
+               "--walls is '{}': expected box, a fixed lower and a movable upper wall along each axis", foreign.walls);
     }
     ForeignPacking file = read_any_packing(a.file, foreign);
     take_cell({a.file, a.cell}, file.packing);

@@ -1,7 +1,6 @@
 #include "cli/ranges.hpp"
 #include "cli/read_packing.hpp"
-
-#include <isostat/core/result.hpp>
+#include "core/refuse.hpp"
 
 #include <fmt/format.h>
 
@@ -21,8 +20,8 @@ PerAxis<double> positive(const std::string& text, std::size_t count, const char*
         out[k] = value.value_or(0);
     }
     if (!good) {
-        throw Error(ErrorKind::usage, fmt::format("{} is '{}': expected {}, {} positive numbers", option, text, names,
-                                                  count == 2 ? "two" : "three"));
+        refuse(ErrorKind::usage, "{} is '{}': expected {}, {} positive numbers", option, text, names,
+               count == 2 ? "two" : "three");
     }
     return out;
 }
@@ -44,19 +43,19 @@ PerAxis<double> parse_lengths(const std::string& text, const char* option, int d
 void take_cell(const CellStatement& statement, Packing& packing) {
     const auto& [file, cell] = statement;
     if (!packing.cell.any() && !cell.empty()) {
-        throw Error(ErrorKind::usage, fmt::format("--cell is '{}' and {} is not periodic: expected no --cell "
-                                                  "(--periodic says so where the file leaves it open)",
-                                                  cell, file));
+        refuse(ErrorKind::usage,
+               "--cell is '{}' and {} is not periodic: expected no --cell (--periodic says so where the file leaves it "
+               "open)",
+               cell, file);
     }
     if (!packing.cell.any()) {
         return;
     }
     if (!packing.cell.all() && !cell.empty()) {
         const bool one = packing.cell.periodic_axes() == 1;
-        throw Error(ErrorKind::usage,
-                    fmt::format("--cell is '{}' and {} is periodic along {}, whose period{} "
-                                "move{}: expected no --cell",
-                                cell, file, one ? "one axis only" : "two axes only", one ? "" : "s", one ? "s" : ""));
+        refuse(ErrorKind::usage,
+               "--cell is '{}' and {} is periodic along {}, whose period{} move{}: expected no --cell", cell, file,
+               one ? "one axis only" : "two axes only", one ? "" : "s", one ? "s" : "");
     }
     if (cell == "isotropic") {
         packing.cell.keep_shape();
@@ -82,9 +81,8 @@ compare::SoftList stated_list(const std::string& file, const ForeignPacking& pac
                               const std::string& contacts, const std::string& columns) {
     const std::vector<std::string> names = parse_list(columns);
     if (names.size() != 3 && names.size() != 2 + packing.packing.axes() && names.size() != 2 + most_axes) {
-        throw Error(ErrorKind::usage, fmt::format("--contact-columns is '{}': expected I,J,FORCE or I,J,FX,FY, names "
-                                                  "of columns of {}",
-                                                  columns, contacts));
+        refuse(ErrorKind::usage, "--contact-columns is '{}': expected I,J,FORCE or I,J,FX,FY, names of columns of {}",
+               columns, contacts);
     }
     const auto number = frame == "last" ? std::nullopt : std::optional(std::stol(frame)); // was checked before
     return compare::list_by_forces(file, packing.packing, packing.ids, number, contacts,

@@ -1,10 +1,7 @@
 #include "cli/verify.hpp"
 
-#include "cli/commands.hpp"
-#include "cli/common.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/terminal.hpp"
-#include "ensemble/members.hpp"
+#include "ensemble/ensemble.hpp"
 #include "io/files.hpp"
 #include "packing/words.hpp"
 

@@ -1,8 +1,6 @@
-#include "cli/common.hpp"
 #include "cli/progress.hpp"
-#include "cli/terminal.hpp"
 #include "cli/verify.hpp"
-#include "ensemble/members.hpp"
+#include "ensemble/ensemble.hpp"
 #include "io/files.hpp"
 
 #include <isostat/core/result.hpp>
@@ -10,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 
 namespace isostat::cli {
@@ -24,7 +21,7 @@ long lines_of(const fs::path& file) {
         return 0;
     }
     const std::string text = read_text(file);
-    return std::count(text.begin(), text.end(), '\n');
+    return std::ranges::count(text, '\n');
 }
 
 /// Records of the runs: those checked so far, and an estimate of the remaining time.
@@ -40,20 +37,17 @@ class Clock {
         done_ += all_[member];
         left_ -= all_[member];
     }
-    [[nodiscard]] double elapsed() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    }
+    [[nodiscard]] double elapsed() const { return pace_.elapsed(); }
     /// `here`: records of the current member.
     [[nodiscard]] double rest(long here) const {
-        const long done = done_ + here;
-        return done == 0 ? -1 : elapsed() / static_cast<double>(done) * static_cast<double>(left_ - here);
+        return pace_.rest(static_cast<double>(done_ + here), static_cast<double>(left_ - here));
     }
 
   private:
     std::vector<long> all_;
     long done_ = 0;
     long left_ = 0;
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    Pace pace_;
 };
 
 struct MemberVerification {

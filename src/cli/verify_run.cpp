@@ -1,11 +1,8 @@
 #include "cli/progress.hpp"
-#include "cli/terminal.hpp"
 #include "cli/verify.hpp"
 
 #include <fmt/format.h>
 
-#include <chrono>
-#include <cmath>
 #include <cstdio>
 
 namespace isostat::cli {
@@ -20,9 +17,8 @@ class VerifyTable {
         if (quiet_) {
             return;
         }
-        const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
         const int done = at.arcs + at.equilibria;
-        const double rest = done == 0 ? NAN : elapsed / done * (at.all_arcs + at.all_equilibria - done);
+        const double rest = pace_.rest(done, at.all_arcs + at.all_equilibria - done);
         if (!at.closed) {
             line_.show(fmt::format("equilibrium {} of {}: arc {} of {}, {} left", at.equilibrium, at.all_equilibria - 1,
                                    at.arcs, at.all_arcs, clock_text(rest)));
@@ -33,7 +29,7 @@ class VerifyTable {
             say("{:>7} {:>6} {:>12} {:>9} {:>8} {:>8}\n", "equil", "arcs", "all arcs", "undecided", "elapsed", "rest");
         }
         say("{:>7} {:>6} {:>12} {:>9} {:>8} {:>8}\n", at.equilibrium, at.arcs_here,
-            fmt::format("{}/{}", at.arcs, at.all_arcs), at.undecided, clock_text(elapsed), clock_text(rest));
+            fmt::format("{}/{}", at.arcs, at.all_arcs), at.undecided, clock_text(pace_.elapsed()), clock_text(rest));
         std::fflush(stdout);
     }
     void end() { line_.clear(); }
@@ -41,7 +37,7 @@ class VerifyTable {
   private:
     bool quiet_;
     StatusLine line_;
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    Pace pace_;
 };
 
 } // namespace

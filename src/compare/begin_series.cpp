@@ -52,7 +52,7 @@ BegunSeries begin_series(const std::filesystem::path& disks, const std::string& 
         if (out.manifest.empty()) {
             (void)file.column(*frame, "id");
             const bool flat = !is_there(*frame, "z") || frame->rows.empty() ||
-                              std::all_of(frame->rows.begin(), frame->rows.end(), [&](const TextLine& row) {
+                              std::ranges::all_of(frame->rows, [&](const TextLine& row) {
                                   const std::size_t z = file.column(*frame, "z");
                                   return row.field(z) == frame->rows.front().field(z);
                               });
@@ -67,7 +67,7 @@ BegunSeries begin_series(const std::filesystem::path& disks, const std::string& 
                                                  : ",left,bottom,back,right,top,front",
                                      axes);
         }
-        const auto commas = std::count(out.frames.begin(), std::find(out.frames.begin(), out.frames.end(), '\n'), ',');
+        const auto commas = std::count(out.frames.begin(), std::ranges::find(out.frames, '\n'), ',');
         out.frames += fmt::format("{}{}\n", frame->header.timestep, std::string(static_cast<std::size_t>(commas), ','));
     }
     if (out.manifest.empty()) {

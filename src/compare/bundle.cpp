@@ -102,7 +102,7 @@ int common_nodes(const std::vector<BundleMember>& members) {
         longest = std::max(longest, m.nodes.size());
     }
     const auto same = [&](std::size_t k) {
-        return std::all_of(members.begin(), members.end(), [&](const BundleMember& m) {
+        return std::ranges::all_of(members, [&](const BundleMember& m) {
             return k >= m.nodes.size() || m.nodes[k] == members.front().nodes[k];
         });
     };
@@ -166,8 +166,8 @@ Bundle make_bundle(const State& start, const Path& path, const std::vector<doubl
 }
 
 int node_with(const Bundle& bundle, const std::vector<Contact>& list) {
-    const auto at = std::find_if(bundle.nodes.begin(), bundle.nodes.end(),
-                                 [&](const BundleNode& node) { return node.equilibrium.contacts == list; });
+    const auto at =
+        std::ranges::find_if(bundle.nodes, [&](const BundleNode& node) { return node.equilibrium.contacts == list; });
     return at == bundle.nodes.end() ? -1 : at->equilibrium.number;
 }
 

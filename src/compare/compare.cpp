@@ -1,8 +1,7 @@
 #include "compare/path.hpp"
 #include "core/parallel.hpp"
+#include "core/refuse.hpp"
 #include "packing/words.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -108,17 +107,14 @@ std::vector<Frame> read_some(SeriesReader& reader, std::size_t most, const Compa
             continue;
         }
         if (options.start && options.start->packing.radius != frame->packing.radius) {
-            throw Error(ErrorKind::bad_input,
-                        frame->row + ": other radii than the start of the exact run (--reference): expected the same "
-                                     "disks, in the order of their ids");
+            refuse(frame->row, "other radii than the start of the exact run (--reference): expected the same disks, in "
+                               "the order of their ids");
         }
         for (std::size_t a = 0; options.start && a + 1 < frame->packing.axes(); ++a) {
             const double stress = frame->load.stress[a] / frame->scale, expected = options.start->load.stress[a];
             if (!(std::abs(stress - expected) <= 1e-9 * expected)) { // both numbers have the digits of a file
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("{}: sigma{} is {}{}: expected {}, that of the start of the exact run "
-                                        "(--reference)",
-                                        frame->row, a + 1, stress, frame->scale == 1 ? "" : " times sigma1", expected));
+                refuse(frame->row, "sigma{} is {}{}: expected {}, that of the start of the exact run (--reference)",
+                       a + 1, stress, frame->scale == 1 ? "" : " times sigma1", expected);
             }
         }
         out.push_back(std::move(*frame));
@@ -175,7 +171,7 @@ std::vector<JudgedFrame> judge_all(SeriesReader& reader, const CompareOptions& o
 }
 
 int status_of(const std::vector<FrameResult>& frames) {
-    const auto has = [&](auto what) { return std::any_of(frames.begin(), frames.end(), what); };
+    const auto has = [&](auto what) { return std::ranges::any_of(frames, what); };
     const auto at_rest_and_elsewhere = [](const FrameResult& f) {
         return f.status != FrameStatus::same && f.status != FrameStatus::moving && f.status != FrameStatus::undecided;
     };
@@ -198,12 +194,11 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
     if (start) {
         if (start->packing.dimension != series.dimension || start->load.loaded_axis != series.dimension - 1 ||
             start->load.path) {
-            throw Error(
+            refuse(
                 ErrorKind::bad_input,
-                fmt::format("the start of the exact run (--reference) loads {} of {}s: expected sigma{} of {}s, "
-                            "as the frames do",
-                            start->load.stress_name(), grain_word(start->packing.dimension), series.dimension,
-                            grain_word(series.dimension)));
+                "the start of the exact run (--reference) loads {} of {}s: expected sigma{} of {}s, as the frames do",
+                start->load.stress_name(), grain_word(start->packing.dimension), series.dimension,
+                grain_word(series.dimension));
         }
         if (series.several) {
             start->load = over(start->load, start->load.stress[0]);

@@ -65,7 +65,7 @@ std::optional<Dashpot> find_dashpot(const Frame& frame, const std::map<Contact, 
         return std::nullopt;
     }
     Eigen::VectorXd b(static_cast<int>(beyond.size()));
-    std::transform(beyond.begin(), beyond.end(), b.begin(), [](const auto& entry) { return entry.second; });
+    std::ranges::transform(beyond, b.begin(), [](const auto& entry) { return entry.second; });
     const double fastest = largest(frame.velocity);
     double least = allowance + left_over * b.cwiseAbs().maxCoeff();
     std::optional<Dashpot> out;

@@ -22,17 +22,10 @@ PerAxis<double> strains_of(const Packing& packing, const Load& load) {
 }
 
 FrameResult begin(const Frame& frame, const Reading& reading) {
-    FrameResult out;
+    FrameResult out = reading.result;
     out.frame = frame.number;
     out.timestep = frame.timestep;
     out.stress = frame.load.loaded_stress() / frame.scale;
-    out.unbalanced = reading.unbalanced;
-    out.listed = reading.listed;
-    out.overlapping = reading.overlapping;
-    out.twice = reading.twice;
-    out.missing_rows = reading.missing;
-    out.law = reading.law;
-    out.ratio = reading.ratio;
     out.snapped = "none";
     out.distance = out.walls = out.rest = out.stiffness = out.downhill = out.self_stress = nan;
     out.strain = strains_of(frame.packing, frame.load);
@@ -111,17 +104,18 @@ JudgedFrame judge(const Series& series, const Frame& frame, const Reading& readi
         r.reason = reading.other_load;
         return out;
     }
-    if (!(reading.unbalanced <= series.rest)) {
+    if (!(reading.result.unbalanced <= series.rest)) {
         r.status = reading.blurred ? FrameStatus::undecided : FrameStatus::moving;
         r.reason = fmt::format(
-            "a force of {:.3g} mean forces is left: expected at most {:.3g} at rest{}{}{}{}", reading.unbalanced,
+            "a force of {:.3g} mean forces is left: expected at most {:.3g} at rest{}{}{}{}", reading.result.unbalanced,
             series.rest, reading.blurred ? "; so much is within the digits of the files, overlaps have no more" : "",
             reading.dashpots.empty() ? "" : "; ", reading.dashpots, reading.few);
         return out;
     }
     if (!reading.dashpots.empty()) {
         r.status = FrameStatus::moving;
-        r.reason = fmt::format("forces differ from the law by {:.3g} mean forces; {}", reading.law, reading.dashpots);
+        r.reason =
+            fmt::format("forces differ from the law by {:.3g} mean forces; {}", reading.result.law, reading.dashpots);
         return out;
     }
     const Snap snapped = snap(soft);

@@ -42,13 +42,12 @@ struct Reading {
     std::string rounding; ///< empty, or words: the difference is within the rounding of the files
     /// Forces that are not in the files are stiffness x overlap, and the unbalanced rest is within their rounding.
     bool blurred = false;
-    int listed = 0;             ///< contacts of the files with a force
-    int overlapping = 0;        ///< pairs that overlap, walls included
-    int twice = 0, missing = 0; ///< rows that repeat a contact; overlaps without a row
-    double ratio = 1;           ///< force / (stiffness overlap) where the two differ most
-    double law = 0;             ///< largest |force - stiffness overlap| / mean force; NaN without a law
-    double mean = 0;            ///< mean force
-    double unbalanced = 0;      ///< largest unbalanced force on a disk or a movable wall, over the mean force
+    /// What the frame tells by itself: `listed` (contacts of the files with a force), `overlapping` (walls included),
+    /// `twice` and `missing_rows` (rows that repeat a contact; overlaps without a row), `ratio` (force / (stiffness
+    /// overlap) where the two differ most), `law` (largest |force - stiffness overlap| / mean force; NaN without a
+    /// law), `unbalanced` (largest unbalanced force on a disk or a movable wall, over the mean force).
+    FrameResult result;
+    double mean = 0; ///< mean force
     /// Contacts, sorted, with a force larger than the unbalanced forces that can carry it (without rattlers by the
     /// positions of the normals), and their forces.
     std::vector<Contact> contacts;

@@ -99,11 +99,11 @@ void read_load(Section& section, Manifest& out) {
     out.load = section.word("kind", LoadKind::nominal, load_kind_words);
     (void)section.required("reference_length", "[L1, L2], of spheres [L1, L2, L3]");
     const auto lengths = section.numbers("reference_length");
-    const bool positive_all = std::all_of(lengths->begin(), lengths->end(), [](double length) { return length > 0; });
+    const bool positive_all = std::ranges::all_of(*lengths, [](double length) { return length > 0; });
     if ((lengths->size() != 2 && lengths->size() != 3) || !positive_all) {
         section.fail("reference_length", "two positive numbers, of spheres three");
     }
-    std::copy(lengths->begin(), lengths->end(), out.reference_length.begin());
+    std::ranges::copy(*lengths, out.reference_length.begin());
     out.series.dimension = static_cast<int>(lengths->size());
     out.series.several = !section.number("sigma1");
     for (std::size_t a = 0; a + 1 < out.axes(); ++a) {
@@ -146,7 +146,7 @@ Manifest read_manifest(const std::filesystem::path& path) {
     Manifest out;
     Section top(&document, "manifest", source);
     if (required(top, "format", fmt::format("\"{}\"", format_name)) != format_name) {
-        top.fail("format", fmt::format("\"{}\"", format_name));
+        top.fail("format", "\"{}\"", format_name);
     }
     out.series.title = top.string("title").value_or("");
     out.series.program = top.string("program").value_or("");

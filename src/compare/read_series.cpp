@@ -76,18 +76,17 @@ class FrameTable {
         }
         for (std::size_t axis = 0; manifest.series.several && axis < last(); ++axis) {
             if (find(stress_column(axis)) < 0) {
-                refuse(where_, fmt::format("no column '{}': expected it, or {} in [load] of the "
-                                           "manifest",
-                                           stress_column(axis), stress_column(axis)));
+                refuse(where_, "no column '{}': expected it, or {} in [load] of the manifest", stress_column(axis),
+                       stress_column(axis));
             }
         }
         if (find(stress_column(last())) < 0 &&
             (manifest.load == LoadKind::true_stress || find(force_column(last())) < 0)) {
             refuse(where_,
-                   fmt::format("no column '{}'{}: expected it (series under stated stresses are compared, not "
-                               "those under stated strains)",
-                               stress_column(last()),
-                               manifest.load == LoadKind::nominal ? " nor '" + force_column(last()) + "'" : ""));
+                   "no column '{}'{}: expected it (series under stated stresses are compared, not those under stated "
+                   "strains)",
+                   stress_column(last()),
+                   manifest.load == LoadKind::nominal ? " nor '" + force_column(last()) + "'" : "");
         }
     }
 
@@ -104,7 +103,7 @@ class FrameTable {
         const std::size_t step = required("timestep");
         frame.timestep = line.integer(step, "timestep", 0, 1L << 62);
         if (frame.timestep <= last_) {
-            line.fail(line.field(step), "timestep", fmt::format("a number above {}, that of the frame before", last_));
+            line.fail(line.field(step), "timestep", "a number above {}, that of the frame before", last_);
         }
         last_ = frame.timestep;
         if (sides_) {
@@ -130,10 +129,10 @@ class FrameTable {
     [[nodiscard]] std::size_t required(const std::string& name) const {
         const int at = find(name);
         if (at < 0) {
-            refuse(where_, fmt::format("no column '{}': expected timestep, the positions of the walls {} (the bounds "
-                                       "of a dump are not taken for them), and {} or {}",
-                                       name, fmt::join(manifest_.wall_names(), ", "), stress_column(last()),
-                                       force_column(last())));
+            refuse(where_,
+                   "no column '{}': expected timestep, the positions of the walls {} (the bounds of a dump are not "
+                   "taken for them), and {} or {}",
+                   name, fmt::join(manifest_.wall_names(), ", "), stress_column(last()), force_column(last()));
         }
         return static_cast<std::size_t>(at);
     }
@@ -236,8 +235,8 @@ class FrameTable {
         }
         if (!(std::abs(line.number(column, name) * manifest_.force_factor - expected) <= known * expected + digits)) {
             line.fail(line.field(column), fmt::format("{} (column {})", name, at + 1),
-                      fmt::format("{}, the stress {} times the reference {} {}", expected / manifest_.force_factor,
-                                  load.stress[axis], load.dimension == plane ? "length" : "area", area));
+                      "{}, the stress {} times the reference {} {}", expected / manifest_.force_factor,
+                      load.stress[axis], load.dimension == plane ? "length" : "area", area);
         }
     }
 
@@ -293,8 +292,7 @@ class Disks {
                 row->fail(row->field(size), manifest_.size, "a positive number");
             }
             if (disk < first_.radius.size() && frame.packing.radius[disk] != first_.radius[disk]) {
-                row->fail(row->field(size), manifest_.size,
-                          fmt::format("the one that this {} has in the first frame", grain()));
+                row->fail(row->field(size), manifest_.size, "the one that this {} has in the first frame", grain());
             }
             sizes.see(row->field(size));
             for (std::size_t a = 0; a < centre.size(); ++a) {
@@ -342,12 +340,12 @@ class Disks {
             if (manifest_.select_column.empty() ||
                 row.field(dump_.column(rows, manifest_.select_column)) == manifest_.select_value) {
                 if (!by_id.emplace(row.integer(id, "id", 0, 1L << 62), &row).second) {
-                    row.fail(row.field(id), "id", fmt::format("every {} once", grain()));
+                    row.fail(row.field(id), "id", "every {} once", grain());
                 }
             }
         }
         if (by_id.empty()) {
-            refuse(dump_.where(rows.header.line), fmt::format("no {}s are selected: expected at least one", grain()));
+            refuse(dump_.where(rows.header.line), "no {}s are selected: expected at least one", grain());
         }
         return by_id;
     }
@@ -362,19 +360,18 @@ class Disks {
             const double first = by_id.begin()->second->number(at, "z");
             if (!(std::abs(row->number(at, "z") - first) <= 0x1p-28 * row->number(size, manifest_.size))) {
                 row->fail(row->field(at), "z",
-                          fmt::format("{}, as of the first disk (three lengths in "
-                                      "reference_length make a series of spheres)",
-                                      first));
+                          "{}, as of the first disk (three lengths in reference_length make a series of spheres)",
+                          first);
             }
         }
     }
     /// Checks that all grains of the first frame are present, and that all have velocities or none has.
     void check_all(Frame& frame, const std::string& place) const {
         if (frame.ids.size() < ids_.size()) {
-            throw Error(ErrorKind::bad_input, fmt::format("{0}: no {1} {2}: expected the {1}s of the first frame",
-                                                          place, grain(), ids_[frame.ids.size()]));
+            refuse(ErrorKind::bad_input, "{0}: no {1} {2}: expected the {1}s of the first frame", place, grain(),
+                   ids_[frame.ids.size()]);
         }
-        if (std::any_of(frame.velocity.begin(), frame.velocity.end(), [](double v) { return std::isnan(v); })) {
+        if (std::ranges::any_of(frame.velocity, [](double v) { return std::isnan(v); })) {
             frame.velocity.clear();
         }
         validate(frame.packing, place);
@@ -433,24 +430,20 @@ class Disks {
         }
         const std::string walls = fmt::format("{}", fmt::join(manifest_.wall_names(), ", "));
         if (manifest_.periodic && sides.stated && header.box) {
-            refuse(dump_.where(header.line),
-                   fmt::format("bounds of the cell here, and columns {} in {}: expected one of them", walls,
-                               manifest_.frames));
+            refuse(dump_.where(header.line), "bounds of the cell here, and columns {} in {}: expected one of them",
+                   walls, manifest_.frames);
         }
         for (std::size_t axis = 0; axis < manifest_.axes(); ++axis) {
             const Boundary boundary = header.boundary[axis];
             const bool periodic = boundary == Boundary::periodic || (sides.stated && boundary == Boundary::unknown);
             if (manifest_.periodic ? !periodic || !(sides.stated || header.box) : boundary == Boundary::periodic) {
-                refuse(
-                    dump_.where(header.line),
-                    fmt::format(
-                        "the box is {}periodic along {}: expected {}", manifest_.periodic ? "not " : "",
-                        axis_names[axis],
-                        manifest_.periodic
-                            ? fmt::format("periodic boundaries with bounds (a dump with pp, XYZ with Lattice, columns "
-                                          "{} of the frames), the manifest has a [cell]",
-                                          walls)
-                            : "walls, or a [cell] in the manifest (in XYZ pbc=\"F F F\" says that there are walls)"));
+                refuse(dump_.where(header.line), "the box is {}periodic along {}: expected {}",
+                       manifest_.periodic ? "not " : "", axis_names[axis],
+                       manifest_.periodic
+                           ? fmt::format("periodic boundaries with bounds (a dump with pp, XYZ with Lattice, columns "
+                                         "{} of the frames), the manifest has a [cell]",
+                                         walls)
+                           : "walls, or a [cell] in the manifest (in XYZ pbc=\"F F F\" says that there are walls)");
             }
         }
     }
@@ -551,7 +544,7 @@ void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
             row.fail(row.field(at), name, expected);
         }
         const long id = row.integer(at, name, 0, 1L << 62);
-        const auto found = std::lower_bound(frame.ids.begin(), frame.ids.end(), id);
+        const auto found = std::ranges::lower_bound(frame.ids, id);
         if (found == frame.ids.end() || *found != id) {
             row.fail(row.field(at), name, expected);
         }
@@ -571,8 +564,8 @@ void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
         } else {
             const int i = disk(row, first, manifest.contact_i), j = disk(row, second, manifest.contact_j);
             if (i == j) {
-                row.fail(row.field(second), manifest.contact_j,
-                         fmt::format("another {} than the first", grain_word(manifest.series.dimension)));
+                row.fail(row.field(second), manifest.contact_j, "another {} than the first",
+                         grain_word(manifest.series.dimension));
             }
             contact.contact = images.next(i, j);
             sign = i < j ? 1 : -1;

@@ -30,8 +30,8 @@ class Reader {
   public:
     Reader(const Series& series, const Frame& frame)
         : series_(series), frame_(frame), law_{series.law, series.stiffness} {
-        walls_listed_ = series.wall_forces || std::any_of(frame.contacts.begin(), frame.contacts.end(),
-                                                          [](const FileContact& c) { return is_wall(c.contact); });
+        walls_listed_ = series.wall_forces ||
+                        std::ranges::any_of(frame.contacts, [](const FileContact& c) { return is_wall(c.contact); });
         double largest = frame.packing.max_radius();
         for (int a = 0; a < frame.packing.dimension; ++a) {
             largest = std::max(largest, frame.packing.length(a));
@@ -53,13 +53,13 @@ class Reader {
     Reading run() {
         take_rows();
         add_overlaps();
-        out_.overlapping = static_cast<int>(overlaps_.size());
+        out_.result.overlapping = static_cast<int>(overlaps_.size());
         double sum = 0;
         for (const auto& [contact, force] : force_) {
             sum += std::max(force, 0.0);
-            out_.listed += force > 0 ? 1 : 0;
+            out_.result.listed += force > 0 ? 1 : 0;
         }
-        out_.mean = out_.listed > 0 ? sum / out_.listed : 0;
+        out_.mean = out_.result.listed > 0 ? sum / out_.result.listed : 0;
         check_overlaps();
         check_missing();
         balance();
@@ -69,8 +69,9 @@ class Reader {
     }
 
   private:
-    void contradict(const std::string& what) {
-        out_.contradiction = out_.contradiction.empty() ? what : out_.contradiction;
+    template <class... Values> void contradict(fmt::format_string<Values...> what, Values&&... values) {
+        out_.contradiction =
+            out_.contradiction.empty() ? fmt::format(what, std::forward<Values>(values)...) : out_.contradiction;
     }
     [[nodiscard]] std::string name(const Contact& c) const {
         const auto id = [&](int i) { return frame_.ids[static_cast<std::size_t>(i)]; };
@@ -93,8 +94,8 @@ class Reader {
         for (const FileContact& c : frame_.contacts) {
             const auto [row, added] = row_.emplace(c.contact, c.row);
             if (!added) {
-                ++out_.twice;
-                contradict(fmt::format("{}: {} come twice (first in {})", c.row, name(c.contact), row->second));
+                ++out_.result.twice;
+                contradict("{}: {} come twice (first in {})", c.row, name(c.contact), row->second);
             } else if (c.force != 0) {
                 force_.emplace(c.contact, c.force); // a negative force is that of a dashpot, or an error
                 beyond_.emplace(c.contact, c.force - expected(c.contact));
@@ -115,16 +116,15 @@ class Reader {
         const double limit = deepest * frame_.packing.min_radius();
         for (const Contact& c : overlaps_) {
             if (gap(frame_.packing, c) < -limit) {
-                contradict(fmt::format("{}: {} overlap by {:.3g}: expected less than {:.3g}, {} of the smallest radius "
-                                       "(radii, or diameters?)",
-                                       at(c), name(c), -gap(frame_.packing, c), limit, deepest));
+                contradict("{}: {} overlap by {:.3g}: expected less than {:.3g}, {} of the smallest radius (radii, or "
+                           "diameters?)",
+                           at(c), name(c), -gap(frame_.packing, c), limit, deepest);
                 return;
             }
         }
         for (const auto& [c, force] : force_) {
             if (gap(frame_.packing, c) > limit) {
-                contradict(
-                    fmt::format("{}: {} have a force and are {:.3g} apart", at(c), name(c), gap(frame_.packing, c)));
+                contradict("{}: {} have a force and are {:.3g} apart", at(c), name(c), gap(frame_.packing, c));
                 return;
             }
         }
@@ -132,7 +132,7 @@ class Reader {
 
     void check_law() {
         if (series_.law == ForceLaw::none) {
-            out_.law = std::numeric_limits<double>::quiet_NaN();
+            out_.result.law = std::numeric_limits<double>::quiet_NaN();
             return;
         }
         Contact worst;
@@ -146,8 +146,8 @@ class Reader {
                 worst = c;
             }
         }
-        out_.law = out_.mean > 0 ? largest / out_.mean : 0;
-        out_.ratio = largest > 0 ? force_.at(worst) / expected(worst) : 1;
+        out_.result.law = out_.mean > 0 ? largest / out_.mean : 0;
+        out_.result.ratio = largest > 0 ? force_.at(worst) / expected(worst) : 1;
         if (largest <= series_.agreement * out_.mean) {
             note_rounding(rounded);
             return;
@@ -157,10 +157,9 @@ class Reader {
         } else if (may_be_dashpots(largest)) {
             out_.dashpots = "dashpots may be at work";
         } else {
-            contradict(fmt::format("{}: the force between {} is {:.6g} and {} {:.6g} (ratio {:.6g}){}", at(worst),
-                                   name(worst), force_.at(worst),
-                                   series_.law == ForceLaw::linear ? "stiffness x overlap" : "that of the law",
-                                   expected(worst), out_.ratio, units_words()));
+            contradict("{}: the force between {} is {:.6g} and {} {:.6g} (ratio {:.6g}){}", at(worst), name(worst),
+                       force_.at(worst), series_.law == ForceLaw::linear ? "stiffness x overlap" : "that of the law",
+                       expected(worst), out_.result.ratio, units_words());
         }
     }
 
@@ -199,9 +198,9 @@ class Reader {
             const bool law = series_.law != ForceLaw::none;
             const double force = law ? expected(c) - unknown(c) : 0;
             if (row_.count(c) == 0 && force > series_.agreement * out_.mean) {
-                ++out_.missing;
-                contradict(fmt::format("{}: {} overlap by {:.6g}, a force of {:.6g}, and have no contact in the files",
-                                       frame_.row, name(c), -gap(frame_.packing, c), expected(c)));
+                ++out_.result.missing_rows;
+                contradict("{}: {} overlap by {:.6g}, a force of {:.6g}, and have no contact in the files", frame_.row,
+                           name(c), -gap(frame_.packing, c), expected(c));
             }
         }
     }
@@ -303,7 +302,7 @@ class Reader {
                 check_disks(left);
             }
             left_ = left.largest();
-            out_.unbalanced = out_.mean > 0 ? left_ / out_.mean : HUGE_VAL;
+            out_.result.unbalanced = out_.mean > 0 ? left_ / out_.mean : HUGE_VAL;
             noise_ = out_.other_load.empty() ? left_ : left.disks;
             out_.blurred = left_ <= blur;
         }

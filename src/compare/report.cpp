@@ -302,6 +302,18 @@ Chart figure(const Comparison& comparison) {
     return {"comparison", blocks.data(), chart_script("comparison", 800, 1000, body)};
 }
 
+void write_bundle(const std::filesystem::path& folder, const Comparison& comparison) {
+    if (comparison.bundle.members.empty()) {
+        return;
+    }
+    make_directory(folder);
+    write_atomically(folder / "nodes.csv", bundle_csv(comparison));
+    write_atomically(folder / "members.csv", members_csv(comparison));
+    for (const BundleNode& node : comparison.bundle.nodes) {
+        write_state(folder / fmt::format("node_{:04}.json", node.equilibrium.number), node.equilibrium.state);
+    }
+}
+
 } // namespace
 
 std::string frames_csv(const Comparison& comparison) {
@@ -358,22 +370,6 @@ std::string comparison_json(const Series& series, const Comparison& comparison) 
                      {"members", objects(of_members(), comparison.bundle.members)}};
     return json::dumped(out, 1) + "\n";
 }
-
-namespace {
-
-void write_bundle(const std::filesystem::path& folder, const Comparison& comparison) {
-    if (comparison.bundle.members.empty()) {
-        return;
-    }
-    make_directory(folder);
-    write_atomically(folder / "nodes.csv", bundle_csv(comparison));
-    write_atomically(folder / "members.csv", members_csv(comparison));
-    for (const BundleNode& node : comparison.bundle.nodes) {
-        write_state(folder / fmt::format("node_{:04}.json", node.equilibrium.number), node.equilibrium.state);
-    }
-}
-
-} // namespace
 
 std::string write_comparison(const std::filesystem::path& folder, const Series& series, const Comparison& comparison) {
     make_folder_for(folder, comparison_folder);

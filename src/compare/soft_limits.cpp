@@ -1,8 +1,8 @@
 #include "compare/report.hpp"
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "snap/backbone.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/snap/snap.hpp>
@@ -55,9 +55,8 @@ std::string soft_limits(const fs::path& run, const fs::path& output, double stif
         const State state = read_any_state(file, Dimensions::any).state;
         const Walls box = Walls::box(state.packing.dimension);
         if (!state.packing.cell.any() && !(state.packing.walls == box)) {
-            throw Error(ErrorKind::bad_input, file.string() +
-                                                  ": expected a box with a fixed lower and a movable upper "
-                                                  "wall along each axis, or a periodic cell, for --stiffness");
+            refuse(file.string(), "expected a box with a fixed lower and a movable upper wall along each axis, or a "
+                                  "periodic cell, for --stiffness");
         }
         add_rows(rows, equilibrium, state, stiffness);
     }

@@ -1,4 +1,5 @@
-#include <isostat/core/result.hpp>
+#include "core/refuse.hpp"
+
 #include <isostat/core/verdict.hpp>
 
 #include <stdexcept>
@@ -11,6 +12,10 @@ const char* to_string(FailureKind kind) {
         words_of<FailureKind>("not isostatic", "overlap", "tie", "undecided", "no limit", "flows", "unbounded",
                               "not converged", "cap reached", "contradiction", "interrupted");
     return word_of(kind, words);
+}
+
+void refuse(const std::string& where, const std::string& what) {
+    throw Error(ErrorKind::bad_input, where + ": " + what);
 }
 
 Words::Words(std::string fixed) {

@@ -4,7 +4,6 @@
 
 #include <isostat/core/contact.hpp>
 
-#include <algorithm>
 #include <iterator>
 #include <vector>
 

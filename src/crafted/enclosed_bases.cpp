@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -158,23 +157,6 @@ class Encloser {
     double sigma_ = 0;
 };
 
-} // namespace
-
-EnclosedBases enclose_bases(const ExactPacking& packing, const Inspection& inspection, int count) {
-    // The bound of a column holds for two disks without a period between them.
-    if (inspection.rank_exact != Verdict::proved || packing.cell.any()) {
-        return {};
-    }
-    const DofMap dofs(approximate(packing));
-    const exact::RankBound independent = exact::rank_bound(exact_contact_matrix(packing, dofs, inspection.contacts));
-    if (independent.rank != inspection.rank) {
-        return {};
-    }
-    return Encloser(packing, inspection).run(independent, count);
-}
-
-namespace {
-
 using Json = nlohmann::ordered_json;
 
 constexpr int vectors_in_json = 10;
@@ -193,6 +175,19 @@ std::vector<std::size_t> visible(const EnclosedVector& vector) {
 }
 
 } // namespace
+
+EnclosedBases enclose_bases(const ExactPacking& packing, const Inspection& inspection, int count) {
+    // The bound of a column holds for two disks without a period between them.
+    if (inspection.rank_exact != Verdict::proved || packing.cell.any()) {
+        return {};
+    }
+    const DofMap dofs(approximate(packing));
+    const exact::RankBound independent = exact::rank_bound(exact_contact_matrix(packing, dofs, inspection.contacts));
+    if (independent.rank != inspection.rank) {
+        return {};
+    }
+    return Encloser(packing, inspection).run(independent, count);
+}
 
 std::string enclosed_text(const ExactPacking& packing, const Inspection& inspection) {
     const EnclosedBases bases = enclose_bases(packing, inspection, vectors_in_text);

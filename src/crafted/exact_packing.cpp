@@ -184,7 +184,7 @@ Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing) {
             return *failure;
         }
     }
-    std::sort(touching.contacts.begin(), touching.contacts.end());
+    std::ranges::sort(touching.contacts);
     return with_bars(std::move(touching.contacts), rounded);
 }
 

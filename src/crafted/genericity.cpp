@@ -1,12 +1,12 @@
 #include "crafted/genericity.hpp"
 
 #include "core/parallel.hpp"
+#include "core/refuse.hpp"
 #include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/machine.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/counting.hpp>
 
@@ -36,19 +36,18 @@ double shear(const Packing& packing) {
 }
 
 void check(const Packing& packing, const GenericityOptions& options) {
-    bool gives_way = std::count(packing.fixed.begin(), packing.fixed.end(), 1) == 0;
+    bool gives_way = std::ranges::count(packing.fixed, 1) == 0;
     for (std::size_t a = 0; a < packing.axes(); ++a) {
         const bool box = packing.walls.lower[a] == WallKind::fixed && packing.walls.upper[a] == WallKind::movable;
         gives_way =
             gives_way && (packing.cell.periodic[a] ? packing.cell.period_moves[a] || packing.cell.keeps_shape : box);
     }
     if (!gives_way) {
-        throw Error(ErrorKind::bad_input,
-                    "genericity: expected along each axis a fixed lower and a movable upper wall, "
-                    "or a period that moves, and no fixed disk");
+        refuse("genericity", "expected along each axis a fixed lower and a movable upper wall, or a period that moves, "
+                             "and no fixed disk");
     }
     if (options.tilt && !packing.cell.all()) {
-        throw Error(ErrorKind::bad_input, "genericity: the tilt is to be perturbed: expected a period along each axis");
+        refuse("genericity", "the tilt is to be perturbed: expected a period along each axis");
     }
     const auto require = [](bool holds, const char* field, const std::string& found, const char* wanted) {
         if (!holds) {
@@ -117,9 +116,8 @@ void count_bodies(GenericitySample& sample, const Packing& packing) {
     const std::vector<int> idle = untouched(packing.disk_count(), sample.carrying);
     for (const std::vector<int>& body : Bodies(packing).members(1)) {
         const auto all = static_cast<int>(body.size());
-        const auto bear = static_cast<int>(std::count_if(body.begin(), body.end(), [&](int member) {
-            return !std::binary_search(idle.begin(), idle.end(), member);
-        }));
+        const auto bear = static_cast<int>(
+            std::ranges::count_if(body, [&](int member) { return !std::ranges::binary_search(idle, member); }));
         sample.rattlers += bear == 0 ? 1 : 0;
         sample.turns += bear == 0 ? 0 : body_freedoms(all, packing.dimension) - body_freedoms(bear, packing.dimension);
     }
@@ -144,7 +142,7 @@ void fill(GenericitySample& sample, const State& state, const Certification& cer
     sample.min_force = std::numeric_limits<double>::infinity();
     const std::vector<int>& zeros = claims.forces->structural_zeros;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        if (std::binary_search(zeros.begin(), zeros.end(), static_cast<int>(l)) || !state.contacts[l].is_unilateral()) {
+        if (std::ranges::binary_search(zeros, static_cast<int>(l)) || !state.contacts[l].is_unilateral()) {
             continue;
         }
         sample.carrying.push_back(state.contacts[l]);
@@ -176,10 +174,8 @@ GenericitySample sampled(const Packing& packing, const std::vector<Contact>& ori
     const State& state = found.ok() ? found.value() : *report.candidate;
     fill(sample, state, certify(state));
     if (!sample.failure) {
-        sample.within_original =
-            std::all_of(sample.carrying.begin(), sample.carrying.end(), [&](const Contact& contact) {
-                return std::binary_search(original.begin(), original.end(), contact);
-            });
+        sample.within_original = std::ranges::all_of(
+            sample.carrying, [&](const Contact& contact) { return std::ranges::binary_search(original, contact); });
     }
     return sample;
 }
@@ -187,8 +183,8 @@ GenericitySample sampled(const Packing& packing, const std::vector<Contact>& ori
 } // namespace
 
 int Genericity::within() const {
-    return static_cast<int>(std::count_if(samples.begin(), samples.end(),
-                                          [](const GenericitySample& sample) { return sample.within_original; }));
+    return static_cast<int>(
+        std::ranges::count_if(samples, [](const GenericitySample& sample) { return sample.within_original; }));
 }
 
 std::map<std::string, int> Genericity::rungs() const {
@@ -204,7 +200,7 @@ std::map<std::string, int> Genericity::rungs() const {
 Genericity genericity(const Packing& given, const std::vector<Contact>& original, const GenericityOptions& options) {
     require_floating_point();
     Packing packing = given;
-    const auto moves = [](const auto& flags) { return std::find(flags.begin(), flags.end(), true) != flags.end(); };
+    const auto moves = [](const auto& flags) { return std::ranges::find(flags, true) != flags.end(); };
     if (packing.cell.all() && !moves(packing.cell.period_moves) && !moves(packing.cell.tilt_moves)) {
         packing.cell.keep_shape(); // other radii require another size of the cell
     }
@@ -212,7 +208,7 @@ Genericity genericity(const Packing& given, const std::vector<Contact>& original
     require_no_arcs(packing, "genericity", "a perturbed copy");
     Genericity out;
     std::vector<Contact> sorted = original;
-    std::sort(sorted.begin(), sorted.end());
+    std::ranges::sort(sorted);
     out.samples.resize(static_cast<std::size_t>(options.samples));
     parallel_pieces(out.samples.size(), [&](std::size_t s) {
         const std::uint64_t attempts = packing.bars.empty() ? 1 : 4; // a body that hangs under some loads may rest
@@ -228,16 +224,16 @@ Genericity genericity(const Packing& given, const std::vector<Contact>& original
             continue;
         }
         ++out.proved;
-        const auto known = std::find_if(out.lists.begin(), out.lists.end(),
-                                        [&](const ContactListCount& list) { return list.contacts == sample.carrying; });
+        const auto known = std::ranges::find_if(
+            out.lists, [&](const ContactListCount& list) { return list.contacts == sample.carrying; });
         if (known == out.lists.end()) {
             out.lists.push_back({sample.carrying, 1});
         } else {
             ++known->samples;
         }
     }
-    std::stable_sort(out.lists.begin(), out.lists.end(),
-                     [](const ContactListCount& a, const ContactListCount& b) { return a.samples > b.samples; });
+    std::ranges::stable_sort(
+        out.lists, [](const ContactListCount& a, const ContactListCount& b) { return a.samples > b.samples; });
     return out;
 }
 

@@ -16,7 +16,7 @@ struct ExactSigns {
     template <std::size_t Count, class Expression>
     [[nodiscard]] int of(const std::array<ContactDirection, Count>& arms, Expression expression) const {
         std::array<PerAxis<Number>, Count> in;
-        std::transform(arms.begin(), arms.end(), in.begin(), [](const ContactDirection& arm) { return arm.normal; });
+        std::ranges::transform(arms, in.begin(), [](const ContactDirection& arm) { return arm.normal; });
         return expression(in).sign();
     }
 };

@@ -55,7 +55,7 @@ class Hyperstaticity {
     /// Largest of the sorted `ends` with h = 0; `most`: by counting, h > 0 at every end beyond this one. 0 when none.
     int last_without(const std::vector<int>& ends, int most) {
         auto in = ends.begin();
-        auto outside = std::upper_bound(ends.begin(), ends.end(), most);
+        auto outside = std::ranges::upper_bound(ends, most);
         if (outside == in) {
             return 0;
         }

@@ -42,7 +42,7 @@ exact::NumberMatrix generic_matrix(const ExactPacking& packing, const DofMap& do
 StrainCounts exact_strains(const ExactPacking& packing, const std::vector<Contact>& touching) {
     const Packing rounded = approximate(packing);
     StrainCounts counts;
-    std::transform(strains.begin(), strains.end(), counts.begin(), [&](Strain strain) {
+    std::ranges::transform(strains, counts.begin(), [&](Strain strain) {
         return without_bars(count_matrix(strained_matrix(
                                 rounded, [&](std::size_t k) { return packing.coordinate(k); }, touching, strain)),
                             bar_count(touching));
@@ -146,10 +146,9 @@ class Inspector {
         const int n = static_cast<int>(contact_count());
         const exact::Kernel stresses = exact::kernel(augmented, limits_.kernel);
         const exact::Kernel motions = exact::kernel(exact::transposed(matrix_), limits_.kernel);
-        const bool load_is_pivot =
-            packing_.load && std::binary_search(stresses.pivots.begin(), stresses.pivots.end(), n);
+        const bool load_is_pivot = packing_.load && std::ranges::binary_search(stresses.pivots, n);
         const bool dense = stresses.exact == Verdict::proved;
-        const auto of_contacts = std::lower_bound(stresses.pivots.begin(), stresses.pivots.end(), n);
+        const auto of_contacts = std::ranges::lower_bound(stresses.pivots, n);
         out_.rank = std::max(dense ? static_cast<int>(of_contacts - stresses.pivots.begin()) : 0, motions.rank);
         const int most = std::min(n, out_.dof_count - out_.rigid_motions);
         const bool exact = dense || motions.exact == Verdict::proved || out_.rank == most;
@@ -317,7 +316,7 @@ class Inspector {
 
 /// Whether all walls are fixed and no disk is.
 bool walls_stay(const ExactPacking& packing) {
-    bool stay = !packing.cell.any() && std::find(packing.fixed.begin(), packing.fixed.end(), 1) == packing.fixed.end();
+    bool stay = !packing.cell.any() && std::ranges::find(packing.fixed, 1) == packing.fixed.end();
     for (std::size_t a = 0; a < packing.axes(); ++a) {
         stay = stay && packing.walls.lower[a] == WallKind::fixed && packing.walls.upper[a] == WallKind::fixed;
     }

@@ -1,15 +1,14 @@
 #include "contact/names.hpp"
+#include "io/json.hpp"
 #include "packing/bodies.hpp"
 
 #include <isostat/crafted/exact_packing.hpp>
-
-#include <nlohmann/json.hpp>
 
 namespace isostat::crafted {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using json::Json;
 
 Json entries(const std::vector<Number>& vector, const std::vector<std::string>& names) {
     Json out = Json::array();
@@ -24,12 +23,7 @@ Json entries(const std::vector<Number>& vector, const std::vector<std::string>& 
 /// Adds the entries that only a periodic cell has.
 void add_cell(const Inspection& inspection, Json& out) {
     if (inspection.strains) {
-        for (std::size_t k = 0; k < strains.size(); ++k) {
-            const Counting& c = (*inspection.strains)[k];
-            out["strains"][to_string(strains[k])] = {{"N_f", c.dof_count},    {"N", c.contact_count},
-                                                     {"rank", c.rank},        {"rank_exact", to_string(c.rank_exact)},
-                                                     {"h", c.hyperstaticity}, {"k", c.mechanisms}};
-        }
+        out["strains"] = json::counts(*inspection.strains);
     }
     if (inspection.jamming) {
         out["jammed"] = {

@@ -3,7 +3,6 @@
 #include "contact/separation.hpp"
 #include "crafted/able.hpp"
 
-#include <algorithm>
 #include <functional>
 
 namespace isostat::crafted {
@@ -34,6 +33,26 @@ Verdict jammed(const Inspection& seen, bool decided, bool positive) {
     return seen.rank_exact != Verdict::proved || !decided ? Verdict::undecided
            : positive                                     ? Verdict::proved
                                                           : Verdict::refuted;
+}
+
+using Vectors = std::vector<std::vector<Number>>;
+
+/// The largest t, by the dual: least f y with y >= 0, change y = -1, stresses y = 0. Empty: t is not bounded.
+std::optional<Number> largest(const std::vector<Number>& forces, const Vectors& rows) {
+    std::vector<Number> b(rows.size());
+    b[0] = -1;
+    return exact::least(rows, b, forces);
+}
+
+/// The contacts whose force vanishes at f + t change.
+std::vector<int> zeros(const std::vector<Number>& forces, const std::vector<Number>& change, const Number& t) {
+    std::vector<int> out;
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        if (!change[l].is_zero() && (forces[l] + t * change[l]).is_zero()) {
+            out.push_back(static_cast<int>(l));
+        }
+    }
+    return out;
 }
 
 } // namespace
@@ -69,30 +88,6 @@ Jamming judge_jamming(const ExactPacking& packing, const std::vector<DiskHold>& 
     out.strict = jammed(strained, strained.support != Support::undecided, strained.support == Support::positive);
     return out;
 }
-
-namespace {
-
-using Vectors = std::vector<std::vector<Number>>;
-
-/// The largest t, by the dual: least f y with y >= 0, change y = -1, stresses y = 0. Empty: t is not bounded.
-std::optional<Number> largest(const std::vector<Number>& forces, const Vectors& rows) {
-    std::vector<Number> b(rows.size());
-    b[0] = -1;
-    return exact::least(rows, b, forces);
-}
-
-/// The contacts whose force vanishes at f + t change.
-std::vector<int> zeros(const std::vector<Number>& forces, const std::vector<Number>& change, const Number& t) {
-    std::vector<int> out;
-    for (std::size_t l = 0; l < forces.size(); ++l) {
-        if (!change[l].is_zero() && (forces[l] + t * change[l]).is_zero()) {
-            out.push_back(static_cast<int>(l));
-        }
-    }
-    return out;
-}
-
-} // namespace
 
 std::optional<LoadRange> load_range(const std::vector<Number>& forces, const std::vector<Number>& change,
                                     const Vectors& stresses) {

@@ -1,8 +1,8 @@
 #include "contact/names.hpp"
+#include "core/refuse.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
@@ -54,31 +54,6 @@ std::string vector_text(const std::vector<Number>& vector, const std::vector<std
 std::string number_list(const std::vector<int>& numbers) {
     return numbers.empty() ? "none" : joined(numbers, [](int i) { return std::to_string(i); });
 }
-
-} // namespace
-
-const char* to_string(DiskHold hold) {
-    static constexpr auto words = words_of<DiskHold>("held", "bridge", "rattler", "fixed", "loaded", "member");
-    return word_of(hold, words);
-}
-
-const char* to_string(Support support) {
-    static constexpr auto words =
-        words_of<Support>("positive", "with zeros", "none", "unbalanced", "undecided", "no load");
-    return word_of(support, words);
-}
-
-const char* to_string(SecondOrder answer) {
-    static constexpr auto words = words_of<SecondOrder>("no mechanism", "rigid", "flexes", "undecided");
-    return word_of(answer, words);
-}
-
-const char* to_string(exact::OneSign sign) {
-    static constexpr auto words = words_of<exact::OneSign>("strict", "partial", "none");
-    return word_of(sign, words);
-}
-
-namespace {
 
 /// The table, with a function for each of its parts.
 class InspectionTable {
@@ -282,8 +257,7 @@ class Comparison {
     }
 
     [[noreturn]] void bad(const ExpectedEntry& entry, const std::string& wanted) const {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: expected.{}: expected {}", source_, entry.line, entry.key, wanted));
+        refuse(ErrorKind::bad_input, "{}:{}: expected.{}: expected {}", source_, entry.line, entry.key, wanted);
     }
     void mismatch(const ExpectedEntry& entry, const std::string& wanted, const std::string& found) {
         out_.push_back(fmt::format("{}:{}: {}: expected {}, found {}", source_, entry.line, entry.key, wanted, found));
@@ -336,8 +310,8 @@ class Comparison {
         for (const auto& row : entry.values) {
             wanted.insert(wanted.end(), row.begin(), row.end());
         }
-        std::sort(wanted.begin(), wanted.end());
-        std::sort(found.begin(), found.end());
+        std::ranges::sort(wanted);
+        std::ranges::sort(found);
         if (wanted != found) {
             mismatch(entry, fmt::format("[{}]", fmt::join(wanted, ", ")), fmt::format("[{}]", fmt::join(found, ", ")));
         }
@@ -347,8 +321,7 @@ class Comparison {
         try {
             return Number::parse(text);
         } catch (const Error& error) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}:{}: expected.{}: {}", source_, entry.line, entry.key, error.what()));
+            refuse(ErrorKind::bad_input, "{}:{}: expected.{}: {}", source_, entry.line, entry.key, error.what());
         }
     }
 
@@ -389,8 +362,8 @@ class Comparison {
     }
 
     void check_strain(const ExpectedEntry& entry, const std::vector<std::string>& row) {
-        const auto* const known = std::find_if(
-            strains.begin(), strains.end(), [&](Strain strain) { return !row.empty() && row[0] == to_string(strain); });
+        const auto* const known =
+            std::ranges::find_if(strains, [&](Strain strain) { return !row.empty() && row[0] == to_string(strain); });
         if (row.size() != 5 || known == strains.end()) {
             bad(entry, "rows [\"fixed cell\", \"isotropic\", \"diagonal\" or \"full strain\", N_f, N, h, k]");
         }
@@ -415,6 +388,27 @@ class Comparison {
 };
 
 } // namespace
+
+const char* to_string(DiskHold hold) {
+    static constexpr auto words = words_of<DiskHold>("held", "bridge", "rattler", "fixed", "loaded", "member");
+    return word_of(hold, words);
+}
+
+const char* to_string(Support support) {
+    static constexpr auto words =
+        words_of<Support>("positive", "with zeros", "none", "unbalanced", "undecided", "no load");
+    return word_of(support, words);
+}
+
+const char* to_string(SecondOrder answer) {
+    static constexpr auto words = words_of<SecondOrder>("no mechanism", "rigid", "flexes", "undecided");
+    return word_of(answer, words);
+}
+
+const char* to_string(exact::OneSign sign) {
+    static constexpr auto words = words_of<exact::OneSign>("strict", "partial", "none");
+    return word_of(sign, words);
+}
 
 std::string to_text(const Inspection& inspection, const ExactPacking& packing) {
     return InspectionTable(inspection, packing).text();

@@ -1,4 +1,5 @@
 #include "contact/images.hpp"
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/section.hpp"
 #include "io/toml.hpp"
@@ -6,7 +7,6 @@
 #include "packing/load_faults.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
 #include <fmt/format.h>
@@ -60,7 +60,7 @@ class Reader {
             try {
                 return Number::parse(text);
             } catch (const Error& error) {
-                in.fail(node, key, fmt::format("an exact number ({})", error.what()));
+                in.fail(node, key, "an exact number ({})", error.what());
             }
         }
         in.fail(node, key, "a number, or a string with an exact number");
@@ -77,7 +77,7 @@ class Reader {
     [[nodiscard]] int index(const Section& in, const toml::node& node, const std::string& key) const {
         const auto n = static_cast<std::int64_t>(out_.packing.radius.size());
         if (!node.is_integer() || node.as_integer()->get() < 0 || node.as_integer()->get() >= n) {
-            in.fail(node, key, fmt::format("the number of a {}, 0 to {}", grain(), n - 1));
+            in.fail(node, key, "the number of a {}, 0 to {}", grain(), n - 1);
         }
         return static_cast<int>(node.as_integer()->get());
     }
@@ -155,7 +155,7 @@ class Reader {
                                 bool may_move) const {
         const auto kind = value_of<WallKind>(node.value_or(std::string_view()), wall_kind_words);
         if (out_.packing.cell.periodic[axis] && kind != WallKind::absent) {
-            in.fail(node, key, fmt::format("\"absent\": {} repeats (period in [cell])", axis_names[axis]));
+            in.fail(node, key, "\"absent\": {} repeats (period in [cell])", axis_names[axis]);
         }
         if (!kind || (!may_move && *kind == WallKind::movable)) {
             in.fail(node, key, may_move ? "\"absent\", \"fixed\" or \"movable\"" : "\"absent\" or \"fixed\"");
@@ -191,10 +191,11 @@ class Reader {
         if (const toml::node* pin = cell.node("pin")) {
             packing.cell.pin = index(cell, *pin, "pin");
         }
-        if (std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
-            cell.refuse("", fmt::format("a fixed {0} and a [cell]: expected no fixed {0} where an axis repeats: the "
-                                        "pinned one says where the origin is",
-                                        grain()));
+        if (std::ranges::find(packing.fixed, 1) != packing.fixed.end()) {
+            cell.refuse("",
+                        "a fixed {0} and a [cell]: expected no fixed {0} where an axis repeats: the pinned one says "
+                        "where the origin is",
+                        grain());
         }
         fits(cell, period);
         cell.finish();
@@ -211,8 +212,8 @@ class Reader {
             in.fail(moved, "moves",
                     out_.packing.dimension() == plane
                         ? "\"x\", \"y\" of an axis that repeats, or \"xy\" where both do, each once"
-                        : "\"x\", \"y\", \"z\" of an axis that repeats, or \"xy\", \"xz\", \"yz\" where both do, "
-                          "each once");
+                        : "\"x\", \"y\", \"z\" of an axis that repeats, or \"xy\", \"xz\", \"yz\" where both do, each "
+                          "once");
         }
         flag = true;
     }
@@ -230,17 +231,17 @@ class Reader {
                     excess += lean * lean;
                 }
                 if (packing.cell.periodic[a] && excess.sign() < 0) {
-                    in.fail(period[a], "period",
-                            fmt::format("a period vector at least as long as the diameter {} of {} {}, which overlaps "
-                                        "its own image",
-                                        diameter.text(), grain(), i));
+                    in.fail(
+                        period[a], "period",
+                        "a period vector at least as long as the diameter {} of {} {}, which overlaps its own image",
+                        diameter.text(), grain(), i);
                 }
             }
         }
         const Packing rounded = approximate(packing);
         validate(rounded, fmt::format("{}:{}", name_, period.source().begin.line));
         if (const auto beyond = disk_beyond(rounded, 0, farthest_disk)) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {}", name_, period.source().begin.line, *beyond));
+            refuse(ErrorKind::bad_input, "{}:{}: {}", name_, period.source().begin.line, *beyond);
         }
     }
 
@@ -266,7 +267,7 @@ class Reader {
             }
         }
         const auto& upper = out_.packing.walls.upper;
-        const bool none = std::all_of(upper.begin(), upper.end(), [](WallKind w) { return w == WallKind::absent; });
+        const bool none = std::ranges::all_of(upper, [](WallKind w) { return w == WallKind::absent; });
         const toml::array* length = box.array("length", d);
         if (length == nullptr && !none) {
             (void)box.required("length", "the position of each upper wall");
@@ -295,7 +296,7 @@ class Reader {
             for (const toml::node& member : root_.array(body, "bodies")) {
                 const int i = all.back().emplace_back(index(root_, member, "bodies"));
                 if (std::exchange(taken[static_cast<std::size_t>(i)], 1) != 0) {
-                    root_.fail(member, "bodies", fmt::format("a {} that is not fixed, once", grain()));
+                    root_.fail(member, "bodies", "a {} that is not fixed, once", grain());
                 }
             }
             if (all.back().size() < 2) {
@@ -307,9 +308,8 @@ class Reader {
         const std::vector<Contact> list = with_bars({}, approximate(packing));
         if (exact::rank_bound(exact_contact_matrix(packing, DofMap(approximate(packing)), list)).rank <
             static_cast<int>(list.size())) {
-            throw Error(ErrorKind::bad_input, where +
-                                                  ": the members of a body lie on one line, or in one plane: expected "
-                                                  "one more beside them, inside another one");
+            refuse(where, "the members of a body lie on one line, or in one plane: expected one more beside them, "
+                          "inside another one");
         }
     }
 
@@ -350,17 +350,16 @@ class Reader {
             const toml::array& row = in.array(entry, grain(), d + 1);
             const int i = index(in, row[0], grain());
             if (out_.packing.is_fixed(i)) {
-                in.fail(row[0], grain(), fmt::format("a {} that is not fixed", grain()));
+                in.fail(row[0], grain(), "a {} that is not fixed", grain());
             }
             for (std::size_t a = 0; a < d; ++a) {
                 out[out_.packing.layout().of_disk(i) + a] += number(in, row[a + 1], grain());
             }
         }
         if (const auto rest = unbalanced<Number>(out, out_.packing.cell)) {
-            in.fail(rows, grain(),
-                    fmt::format("0 along {}, which repeats: the pinned {} would bear the rest", axis_names[rest->first],
-                                grain()),
-                    "forces that sum to " + rest->second.text());
+            in.fail_found(rows, grain(), "forces that sum to " + rest->second.text(),
+                          fmt::format("0 along {}, which repeats: the pinned {} would bear the rest",
+                                      axis_names[rest->first], grain()));
         }
         return out;
     }

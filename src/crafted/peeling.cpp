@@ -1,11 +1,10 @@
 #include "crafted/peeling.hpp"
 
 #include "contact/separation.hpp"
+#include "core/refuse.hpp"
 #include "crafted/able.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Interval_nt.h>
@@ -89,16 +88,15 @@ class Peeler {
           waiting_(packing.radius.size()), now_(static_cast<int>(contacts.size())) {
         for (std::size_t l = 0; l < contacts.size(); ++l) {
             if (flat_ && contacts[l].of_disks() && contacts[l].i == contacts[l].j) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("disk {} is near its own image: expected a cell that is larger than the "
-                                        "largest disk and the threshold",
-                                        contacts[l].i));
+                refuse(ErrorKind::bad_input,
+                       "disk {} is near its own image: expected a cell that is larger than the largest disk and the "
+                       "threshold",
+                       contacts[l].i);
             }
             const Direction direction{static_cast<int>(l), false, bodies_.of(contacts[l].i)};
             if (signs_.of<1>({direction}, [](const auto& x) { return dot(x[0], x[0]); }) == 0) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("{}: the two {}s have the same centre: expected different ones",
-                                        to_string(contacts[l], packing.dimension), grain_word(packing.dimension)));
+                refuse(to_string(contacts[l], packing.dimension),
+                       "the two {}s have the same centre: expected different ones", grain_word(packing.dimension));
             }
             around_[static_cast<std::size_t>(direction.about)].push_back(direction);
             if (contacts[l].of_disks()) {
@@ -155,8 +153,8 @@ class Peeler {
         const std::vector<Direction> before = around_[grain];
         const std::vector<Direction> after = able(before, signs_, flat_);
         for (const Direction& d : before) {
-            const bool stays = std::any_of(after.begin(), after.end(),
-                                           [&](const Direction& other) { return other.contact == d.contact; });
+            const bool stays =
+                std::ranges::any_of(after, [&](const Direction& other) { return other.contact == d.contact; });
             if (!stays) {
                 drop(d.contact);
             }

@@ -1,4 +1,5 @@
 #include "contact/near_pairs.hpp"
+#include "core/refuse.hpp"
 #include "crafted/gap_order.hpp"
 #include "crafted/hyperstaticity.hpp"
 #include "crafted/peeling.hpp"
@@ -10,7 +11,6 @@
 #include "rigidity/strained_matrix.hpp"
 
 #include <isostat/core/machine.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/crafted/plateau.hpp>
 
 #include <fmt/format.h>
@@ -38,7 +38,7 @@ class Sequence {
           largest_(largest) {
         check();
         find_candidates();
-        std::sort(items_.begin(), items_.end(), [this](const GapOrder::Item& a, const GapOrder::Item& b) {
+        std::ranges::sort(items_, [this](const GapOrder::Item& a, const GapOrder::Item& b) {
             const int sign = order_.compare(a, b);
             return sign != 0 ? sign < 0 : a.contact < b.contact;
         });
@@ -70,7 +70,7 @@ class Sequence {
         all_stress_ = std::make_unique<Hyperstaticity>(
             std::move(counts), all_counts(0).dof_count - all_counts(0).rigid_motions, [this, matrix_rank](int m) {
                 std::vector<Contact> list(contacts_.begin(), contacts_.begin() + m);
-                std::sort(list.begin(), list.end());
+                std::ranges::sort(list);
                 return matrix_rank(packing_, list);
             });
     }
@@ -81,9 +81,8 @@ class Sequence {
 
     /// Number of candidates with gap <= threshold, always one of `ends`.
     [[nodiscard]] int below(double threshold) const {
-        const auto end = std::partition_point(items_.begin(), items_.end(), [&](const GapOrder::Item& item) {
-            return order_.compare(item, threshold) <= 0;
-        });
+        const auto end = std::ranges::partition_point(
+            items_, [&](const GapOrder::Item& item) { return order_.compare(item, threshold) <= 0; });
         return static_cast<int>(end - items_.begin());
     }
 
@@ -103,7 +102,7 @@ class Sequence {
                 out.push_back(contacts_[l]);
             }
         }
-        std::sort(out.begin(), out.end());
+        std::ranges::sort(out);
         return out;
     }
 
@@ -131,12 +130,11 @@ class Sequence {
         out.rounding = rounding_ = std::max(out.rounding, 0x1p-52 * packing_.max_radius());
         lowest_ = first;
         if (first) {
-            start_ =
-                static_cast<std::size_t>(std::lower_bound(ends_.begin(), ends_.end(), below(*first)) - ends_.begin());
+            start_ = static_cast<std::size_t>(std::ranges::lower_bound(ends_, below(*first)) - ends_.begin());
         }
         // h >= N - N_f + rigid motions, and h does not decrease.
         const auto most = [&](auto counts) {
-            const auto first = std::find_if(ends_.begin(), ends_.end(), [&](int m) { return excess(counts(m)) > 0; });
+            const auto first = std::ranges::find_if(ends_, [&](int m) { return excess(counts(m)) > 0; });
             return first == ends_.end() ? size() : *first - 1;
         };
         const auto backbone = [this](int m) { return backbone_counts(m); };
@@ -168,27 +166,23 @@ class Sequence {
         require_no_arcs(packing_, "plateau", "a count against the gap threshold");
         for (const Bar& bar : packing_.bars) {
             if (packing_.is_fixed(DiskId(bar.i)) || packing_.is_fixed(DiskId(bar.j))) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("plateau: bar {}-{}: expected members that are not fixed", bar.i, bar.j));
+                refuse("plateau", "bar {}-{}: expected members that are not fixed", bar.i, bar.j);
             }
         }
         count_contacts(packing_, with_bars({}, packing_)); // refuses dependent bars
         const auto sensible = [](double x) { return std::abs(x) <= largest_length; };
         for (const double x : packing_.q) {
             if (!sensible(x)) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("plateau: coordinate {}: expected lengths within 1e+-100", x));
+                refuse("plateau", "coordinate {}: expected lengths within 1e+-100", x);
             }
         }
         for (const double r : packing_.radius) {
             if (!sensible(r) || r < smallest_length) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("plateau: radius {}: expected lengths within 1e+-100", r));
+                refuse("plateau", "radius {}: expected lengths within 1e+-100", r);
             }
         }
         if (!sensible(largest_)) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("plateau: threshold {}: expected lengths within 1e+-100", largest_));
+            refuse("plateau", "threshold {}: expected lengths within 1e+-100", largest_);
         }
     }
 
@@ -276,7 +270,7 @@ class Sequence {
             for (int& member : body) {
                 member = first[static_cast<std::size_t>(member)];
             }
-            std::sort(body.begin(), body.end());
+            std::ranges::sort(body);
             for (std::size_t s = 1; freedoms_of(s) < freedoms_of(body.size()); ++s) {
                 const int left = freedoms_of(body.size()) - freedoms_of(s);
                 out[static_cast<std::size_t>(body[s - 1])] += left;
@@ -441,8 +435,7 @@ std::set<int> thinned(const Sequence& sequence, int begin, int end, int rows, co
     }
     std::set<int> out{inside.front(), inside.back()};
     const int half = std::max(rows / 2, 1);
-    const auto positive =
-        std::find_if(inside.begin(), inside.end(), [&](int m) { return sequence.threshold_of(m) > 0; });
+    const auto positive = std::ranges::find_if(inside, [&](int m) { return sequence.threshold_of(m) > 0; });
     // All overlaps count as one list, because the contacts of a soft packing are its overlaps.
     const auto start = positive == inside.begin() || positive == inside.end() ? inside.begin() : positive - 1;
     const auto last = inside.end() - 1 - start;
@@ -466,7 +459,7 @@ std::set<int> thinned(const Sequence& sequence, int begin, int end, int rows, co
             }
             for (const double t : {range.first, range.last}) {
                 const int m = sequence.below(t);
-                const auto at = std::lower_bound(inside.begin(), inside.end(), m);
+                const auto at = std::ranges::lower_bound(inside, m);
                 if (at != inside.end() && *at == m) {
                     out.insert(m);
                     out.insert(at == inside.begin() ? m : *(at - 1));
@@ -495,7 +488,7 @@ double Plateau::width(const PlateauRange& range) const {
 
 Plateau plateau(const Packing& packing, const std::vector<double>& thresholds, Strain strain) {
     require_floating_point();
-    assert(std::is_sorted(thresholds.begin(), thresholds.end()));
+    assert(std::ranges::is_sorted(thresholds));
     if (thresholds.empty()) {
         return {};
     }

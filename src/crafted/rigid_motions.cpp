@@ -21,7 +21,7 @@ class Span {
                 row[k] -= factor * known[k];
             }
         }
-        const auto entry = std::find_if(row.begin(), row.end(), [](const Number& x) { return !x.is_zero(); });
+        const auto entry = std::ranges::find_if(row, [](const Number& x) { return !x.is_zero(); });
         if (entry != row.end()) {
             const Number scale = entry->inverse();
             const auto pivot = static_cast<std::size_t>(entry - row.begin());
@@ -48,8 +48,8 @@ class Freedom {
         }
     }
     [[nodiscard]] int count() const {
-        const auto open = std::count(open_.begin(), open_.end(), true);
-        return static_cast<int>(std::count(moves_.begin(), moves_.end(), true) + open * (open - 1) / 2);
+        const auto open = std::ranges::count(open_, true);
+        return static_cast<int>(std::ranges::count(moves_, true) + open * (open - 1) / 2);
     }
     /// The motion of a point along each axis.
     [[nodiscard]] PerAxis<Row> of(const PerAxis<Number>& x) const {

@@ -1,11 +1,10 @@
 #include "ensemble/ensemble.hpp"
 
+#include "core/refuse.hpp"
 #include "io/equilibria.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "report/statistics.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -71,20 +70,16 @@ void EnsembleDirectory::check_resumed() const {
     const Field old(parsed, file.string());
     const EnsembleHeader& asked = samples_.header();
     if (old.at("scene").string() != asked.scene_text) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: the ensemble is of another scene ({}): expected the text of "
-                                "{}",
-                                file.string(), old.at("scene_file").string(), asked.scene.string()));
+        refuse(file.string(), "the ensemble is of another scene ({}): expected the text of {}",
+               old.at("scene_file").string(), asked.scene.string());
     }
     if (old.at("first_seed").string() != std::to_string(asked.first_seed)) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: the ensemble starts at seed {}: expected {}", file.string(),
-                                                      old.at("first_seed").string(), asked.first_seed));
+        refuse(file.string(), "the ensemble starts at seed {}: expected {}", old.at("first_seed").string(),
+               asked.first_seed);
     }
     if (old.at("program").string() != asked.program) {
-        throw Error(
-            ErrorKind::bad_input,
-            fmt::format("{}: the ensemble was made by {}: expected {}, the same bits are not promised otherwise",
-                        file.string(), old.at("program").string(), asked.program));
+        refuse(file.string(), "the ensemble was made by {}: expected {}, the same bits are not promised otherwise",
+               old.at("program").string(), asked.program);
     }
 }
 
@@ -139,7 +134,7 @@ std::vector<Sample> EnsembleDirectory::merge() const {
     write_atomically(path / "equilibria.csv", equilibria.empty() ? with_seeds(equilibria_header()) : equilibria);
     write_atomically(path / "increments.csv", increments);
     write_atomically(path / "samples.csv", table);
-    const bool all = std::all_of(samples.begin(), samples.end(), [](const Sample& s) { return s.finished(); });
+    const bool all = std::ranges::all_of(samples, [](const Sample& s) { return s.finished(); });
     write_header(all ? "completed" : "interrupted", samples);
     return samples;
 }

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -114,5 +113,19 @@ class EnsembleDirectory {
     SampleFolders samples_;
     TakenFolder taken_;
 };
+
+/// A run of an ensemble, for commands that take the folder of one in place of a run.
+struct Member {
+    std::uint64_t seed = 0;
+    std::filesystem::path folder;
+    bool begun = false; ///< its run.json exists
+    int further = 0;    ///< for a run not begun: so many following ones are not begun either
+};
+
+/// Whether this is the folder of an ensemble (and not that of a run).
+bool is_ensemble(const std::filesystem::path& directory);
+
+/// The samples that ensemble.json names, by seed; the first one of each series not begun. Throws `Error(bad_input)`.
+std::vector<Member> members_of(const std::filesystem::path& directory);
 
 } // namespace isostat

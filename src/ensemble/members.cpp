@@ -1,12 +1,9 @@
-#include "ensemble/members.hpp"
 
 #include "ensemble/ensemble.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 #include "io/json.hpp"
 #include "io/numbers.hpp"
-
-#include <isostat/core/result.hpp>
 
 namespace isostat {
 

@@ -29,10 +29,10 @@ double put_beside(Packing& packing, int first, int member, const std::string& so
         }
         if (const double apart = std::abs(x[a] - from[a]) / packing.lattice(a, a);
             packing.cell.periodic[a] && apart > told) {
-            refuse(source, fmt::format("{} {} of the body of {} {} is {:.3g} periods beside it: "
-                                       "expected at most {}, as else its images are not told apart",
-                                       grain_word(packing.dimension), member, grain_word(packing.dimension), first,
-                                       apart, told));
+            refuse(source,
+                   "{} {} of the body of {} {} is {:.3g} periods beside it: expected at most {}, as else its images "
+                   "are not told apart",
+                   grain_word(packing.dimension), member, grain_word(packing.dimension), first, apart, told);
         }
     }
     return worst;

@@ -22,10 +22,9 @@ void take_box(Raw& raw, std::size_t axes, const std::string& source, ForeignOpti
         return;
     }
     if (options.box.size() != 2 * axes) {
-        refuse(source, fmt::format("a box of {} bounds was stated: expected {}, low and high of each axis of {}",
-                                   options.box.size(), 2 * axes,
-                                   axes == 2 ? "disks (z is the same for all; --dimension 3 takes spheres in a plane)"
-                                             : "spheres"));
+        refuse(source, "a box of {} bounds was stated: expected {}, low and high of each axis of {}",
+               options.box.size(), 2 * axes,
+               axes == 2 ? "disks (z is the same for all; --dimension 3 takes spheres in a plane)" : "spheres");
     }
     if (!raw.box && options.periodic) {
         raw.box.emplace();
@@ -59,9 +58,10 @@ void take_lattice(Raw& raw, std::size_t axes, const std::string& source, const F
             vectors[k / axes][k % axes] = stated[k];
         }
     } else {
-        refuse(source, fmt::format("a lattice of {} numbers was stated: expected {} lengths, {} more for tilts, or {} "
-                                   "entries of period vectors",
-                                   stated.size(), axes, tilts, axes * axes));
+        refuse(source,
+               "a lattice of {} numbers was stated: expected {} lengths, {} more for tilts, or {} entries of period "
+               "vectors",
+               stated.size(), axes, tilts, axes * axes);
     }
     raw.take_vectors(vectors, {});
     raw.boundary.fill(Boundary::periodic);
@@ -82,9 +82,10 @@ void check_boundaries(Raw& raw, std::size_t axes, const std::string& source, con
             raw.notes.push_back(fmt::format("{} is periodic, as stated", axis));
         }
         if (raw.boundary[a] == Boundary::periodic && !options.cells) {
-            refuse(source, fmt::format("boundaries along {} are periodic: expected open ones or walls; contacts across "
-                                       "them are not supported (--not-periodic looks at the disks as they lie)",
-                                       axis));
+            refuse(source,
+                   "boundaries along {} are periodic: expected open ones or walls; contacts across them are not "
+                   "supported (--not-periodic looks at the disks as they lie)",
+                   axis);
         }
         if (raw.boundary[a] == Boundary::unknown && raw.box) {
             raw.notes.push_back(fmt::format(
@@ -95,17 +96,18 @@ void check_boundaries(Raw& raw, std::size_t axes, const std::string& source, con
     const auto open = [](Boundary boundary) { return boundary != Boundary::periodic; };
     if (raw.vectors &&
         std::any_of(raw.boundary.begin(), raw.boundary.begin() + static_cast<std::ptrdiff_t>(axes), open)) {
-        refuse(source, fmt::format("the first period vector (Lattice) is not along x, or the second one not in the "
-                                   "plane of x and y: expected that, or all axes periodic{}",
-                                   stated));
+        refuse(source,
+               "the first period vector (Lattice) is not along x, or the second one not in the plane of x and y: "
+               "expected that, or all axes periodic{}",
+               stated);
     }
     for (std::size_t b = 1; b < axes; ++b) {
         for (std::size_t a = 0; a < b; ++a) {
             const double tilt = raw.tilt[Cell::tilt(a, b)];
             if (tilt != 0 && !(raw.boundary[a] == Boundary::periodic && raw.boundary[b] == Boundary::periodic)) {
-                refuse(source, fmt::format("the box (Lattice, or {}) is tilted by {}: expected one along the axes, or "
-                                           "both axes periodic{}",
-                                           tilt_names[Cell::tilt(a, b)], tilt, stated));
+                refuse(source,
+                       "the box (Lattice, or {}) is tilted by {}: expected one along the axes, or both axes periodic{}",
+                       tilt_names[Cell::tilt(a, b)], tilt, stated);
             }
         }
     }
@@ -134,17 +136,16 @@ void add_wall_pair(ForeignPacking& out, std::size_t a, const Raw& raw, const std
     }
     const auto [low, high] = sides_of(raw, options, a);
     if (options.box.empty() && raw.loose[a]) {
-        refuse(source, fmt::format("bounds along {} are shrink-wrapped: expected fixed ones for walls, or --box",
-                                   axis_names[a]));
+        refuse(source, "bounds along {} are shrink-wrapped: expected fixed ones for walls, or --box", axis_names[a]);
     }
     if (!(low < high)) {
-        refuse(source, fmt::format("box from {} to {}: expected a lower and a higher bound", low, high));
+        refuse(source, "box from {} to {}: expected a lower and a higher bound", low, high);
     }
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
         double& x = packing.q[packing.axes() * i + a];
         if (!(low < x && x < high)) {
-            refuse(source, fmt::format("{} of disk {} is {}: expected a centre between the walls at {} and {}{}{}",
-                                       axis_names[a], i, x, low, high, raw.types.empty() ? "" : "; ", raw.types));
+            refuse(source, "{} of disk {} is {}: expected a centre between the walls at {} and {}{}{}", axis_names[a],
+                   i, x, low, high, raw.types.empty() ? "" : "; ", raw.types);
         }
         x = shifted(x, low, worst);
     }
@@ -249,14 +250,15 @@ double add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, 
     for (std::size_t a = 0; a < d; ++a) {
         const double period = packing.lattice(a, a), width = 2 * packing.max_radius();
         if (packing.cell.periodic[a] && !(period > 0)) {
-            refuse(source, fmt::format("period {} along {}: expected a positive one", period, axis_names[a]));
+            refuse(source, "period {} along {}: expected a positive one", period, axis_names[a]);
         }
         constexpr double too_wide = 1.5;
         if (packing.cell.periodic[a] && width > too_wide * period) {
-            refuse(source, fmt::format("a {} {} wide in a period of {} along {}: expected at most one period (sizes "
-                                       "in another unit, or diameters for radii?{})",
-                                       grain_word(packing.dimension), width, period, axis_names[a],
-                                       d == 2 ? "" : "; a packing of disks has one z, or --plane says which plane"));
+            refuse(source,
+                   "a {} {} wide in a period of {} along {}: expected at most one period (sizes in another unit, or "
+                   "diameters for radii?{})",
+                   grain_word(packing.dimension), width, period, axis_names[a],
+                   d == 2 ? "" : "; a packing of disks has one z, or --plane says which plane");
         }
     }
     worst = std::max(worst, wrap_into_cell(packing).rounding);
@@ -281,9 +283,8 @@ double add_walls(ForeignPacking& out, const Raw& raw, const std::string& source,
         return 0;
     }
     if (options.box.empty() && !raw.box) {
-        refuse(source, fmt::format("walls were asked for and the file has no bounds of a box: expected --box "
-                                   "xlo:xhi,ylo:yhi{}",
-                                   packing.dimension == 2 ? "" : ",zlo:zhi"));
+        refuse(source, "walls were asked for and the file has no bounds of a box: expected --box xlo:xhi,ylo:yhi{}",
+               packing.dimension == 2 ? "" : ",zlo:zhi");
     }
     double worst = 0;
     std::vector<std::string> places;
@@ -314,7 +315,7 @@ void settle_bounds(Raw& raw, std::size_t axes, const std::string& source, Foreig
 
 double add_box(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
     const auto axes = std::span(raw.boundary).first(out.packing.axes());
-    const bool periodic = std::find(axes.begin(), axes.end(), Boundary::periodic) != axes.end();
+    const bool periodic = std::ranges::find(axes, Boundary::periodic) != axes.end();
     return (periodic ? add_cell : add_walls)(out, raw, source, options);
 }
 

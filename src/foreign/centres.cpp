@@ -2,8 +2,6 @@
 // of Lubachevsky and Stillinger write this without vectors, TJ (Torquato and Jiao) with vectors.
 #include "foreign/source.hpp"
 
-#include <isostat/core/result.hpp>
-
 #include <fmt/format.h>
 
 #include <utility>
@@ -55,8 +53,8 @@ Raw read_centres(const std::string& text, const std::string& source, const Forei
     if (const long left = rows_left(lines); left == count + *raw.dimension) {
         read_vectors(lines, axes, raw);
     } else if (left != count) {
-        lines.fail(fmt::format("{} rows after this one: expected {} centres, or {} period vectors and then these", left,
-                               count, axes));
+        lines.fail("{} rows after this one: expected {} centres, or {} period vectors and then these", left, count,
+                   axes);
     }
     Rows rows(std::move(columns), source);
     while (rows.seen() < count) {

@@ -28,7 +28,7 @@ void take_plane(Raw& raw, const std::string& plane, const std::string& source) {
         return;
     }
     if (!raw.has_z) {
-        refuse(source, fmt::format("--plane {} was stated and there is no column z: expected one", plane));
+        refuse(source, "--plane {} was stated and there is no column z: expected one", plane);
     }
     const PerAxis<std::size_t> from{plane == "xz" ? 0U : 1U, 2, plane == "xz" ? 1U : 0U};
     const auto permuted = [&](auto& of_axes) {
@@ -37,7 +37,7 @@ void take_plane(Raw& raw, const std::string& plane, const std::string& source) {
             of_axes[a] = before[from[a]];
         }
     };
-    std::for_each(raw.centre.begin(), raw.centre.end(), permuted);
+    std::ranges::for_each(raw.centre, permuted);
     permuted(raw.places);
     permuted(raw.boundary);
     permuted(raw.loose);
@@ -48,7 +48,7 @@ void take_plane(Raw& raw, const std::string& plane, const std::string& source) {
     }
     if (raw.vectors) {
         auto box = *raw.box;
-        std::for_each(raw.vectors->begin(), raw.vectors->end(), permuted);
+        std::ranges::for_each(*raw.vectors, permuted);
         permuted(*raw.vectors);
         permuted(box);
         const Digits digits = raw.sides[0];
@@ -131,8 +131,7 @@ std::string_view after_lines(std::string_view text, long lines) {
 int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& options, double& rounding) {
     const std::optional<int> stated = options.dimension ? options.dimension : raw.dimension;
     if (stated.value_or(2) != raw.dimension.value_or(stated.value_or(2))) {
-        refuse(source,
-               fmt::format("dimension {} was stated and the file has {}: expected that", *stated, *raw.dimension));
+        refuse(source, "dimension {} was stated and the file has {}: expected that", *stated, *raw.dimension);
     }
     if (stated == 3 && !raw.has_z) {
         refuse(source, "dimension 3 was stated and there is no column z: expected one");
@@ -142,15 +141,14 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
     for (std::size_t i = 0; i < raw.centre.size(); ++i) {
         farthest = off(i) > off(farthest) ? i : farthest;
     }
-    const double radius =
-        *std::min_element(raw.size.begin(), raw.size.end()) / (raw.meaning == SizeMeaning::radius ? 1 : 2);
+    const double radius = *std::ranges::min_element(raw.size) / (raw.meaning == SizeMeaning::radius ? 1 : 2);
     const bool flat = off(farthest) <= 0x1p-27 * radius;
     const int dimension = stated.value_or(flat ? 2 : 3);
     if (dimension == 2 && !flat) {
         refuse(fmt::format("{}:{}", source, raw.line[farthest]),
-               fmt::format("z of disk {} is '{}': expected {}, as of disk 0: disks were stated, in a plane "
-                           "(--dimension 3 takes spheres)",
-                           farthest, raw.centre[farthest][2], raw.centre[0][2]));
+               "z of disk {} is '{}': expected {}, as of disk 0: disks were stated, in a plane (--dimension 3 takes "
+               "spheres)",
+               farthest, raw.centre[farthest][2], raw.centre[0][2]);
     }
     if (dimension == 2 && off(farthest) > 0) {
         raw.notes.push_back(
@@ -161,8 +159,7 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
         refuse(raw.place.empty() ? source : raw.place, "expected a cell in the plane of the disks");
     }
     for (std::size_t a = 0; dimension == 3 && !stated && a < 2; ++a) {
-        if (std::all_of(raw.centre.begin(), raw.centre.end(),
-                        [&](const auto& x) { return x[a] == raw.centre[0][a]; })) {
+        if (std::ranges::all_of(raw.centre, [&](const auto& x) { return x[a] == raw.centre[0][a]; })) {
             raw.notes.push_back(fmt::format("{} is the same for all: --plane {} takes them for disks", axis_names[a],
                                             a == 0 ? "yz" : "xz"));
         }
@@ -177,13 +174,13 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
 void check_range(const Packing& packing, const std::string& source) {
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
         if (!(packing.radius[i] >= shortest_length && packing.radius[i] <= longest_length)) {
-            refuse(source, fmt::format("radius of disk {} is {}: expected one from {} to {}", i, packing.radius[i],
-                                       shortest_length, longest_length));
+            refuse(source, "radius of disk {} is {}: expected one from {} to {}", i, packing.radius[i], shortest_length,
+                   longest_length);
         }
     }
     for (const double x : packing.q) {
         if (!(std::abs(x) <= longest_length)) {
-            refuse(source, fmt::format("a coordinate is {}: expected a size of at most {}", x, longest_length));
+            refuse(source, "a coordinate is {}: expected a size of at most {}", x, longest_length);
         }
     }
 }
@@ -228,8 +225,7 @@ double rounding_of(const Raw& raw, const ForeignPacking& found, const ForeignOpt
     for (const double stated : options.box) {
         side = std::max(side, 0x1p-53 * std::abs(stated) + moved);
     }
-    const bool tilted =
-        raw.vectors || std::any_of(raw.tilt.begin(), raw.tilt.end(), [](double tilt) { return tilt != 0; });
+    const bool tilted = raw.vectors || std::ranges::any_of(raw.tilt, [](double tilt) { return tilt != 0; });
     const Scaling scaling = scaling_of(raw, packing.axes());
     // All coordinates have as many digits as given; where that is fewer than radii have, digits were cut off.
     return rounding_of_gaps(places.rounding() * scaling.factor + scaling.rounding + moved, side, size,
@@ -245,9 +241,9 @@ Raw read_raw(const std::string& format, const std::string& text, const std::stri
     const std::vector<std::string>& formats = foreign_formats();
     static constexpr std::array readers{foreign::read_lammps_data, foreign::read_lammps_dump, foreign::read_xyz,
                                         foreign::read_table,       foreign::read_braces,      foreign::read_centres};
-    const auto at = static_cast<std::size_t>(std::find(formats.begin(), formats.end(), format) - formats.begin());
+    const auto at = static_cast<std::size_t>(std::ranges::find(formats, format) - formats.begin());
     if (at >= readers.size()) {
-        refuse(source, fmt::format("format '{}': expected one of {}", format, fmt::join(formats, ", ")));
+        refuse(source, "format '{}': expected one of {}", format, fmt::join(formats, ", "));
     }
     return readers[at](text, source, options);
 }
@@ -279,19 +275,17 @@ ForeignPacking parse_foreign(const std::string& whole, const std::string& source
     }
     out.format = !options.format.empty() ? options.format : options.skip > 0 ? "table" : recognise_format(text);
     if (options.skip > 0 && out.format != "table") {
-        refuse(source, fmt::format("{} lines were to be passed over: expected a table, the format is {}", options.skip,
-                                   out.format));
+        refuse(source, "{} lines were to be passed over: expected a table, the format is {}", options.skip, out.format);
     }
     if (options.size && options.size->column.empty() &&
         !(options.size->value > 0 && std::isfinite(options.size->value))) {
-        refuse(source, fmt::format("stated size {}: expected a positive number", options.size->value));
+        refuse(source, "stated size {}: expected a positive number", options.size->value);
     }
     if (!options.columns.empty() && out.format == "centres") {
         refuse(source, "names of columns were stated: expected none, a file of centres has coordinates alone");
     }
     if (options.frame.value_or(0) != 0 && one_frame(out.format)) {
-        refuse(source, fmt::format("frame {} was asked for: expected frame 0, a file of {} has one", *options.frame,
-                                   out.format));
+        refuse(source, "frame {} was asked for: expected frame 0, a file of {} has one", *options.frame, out.format);
     }
     Raw raw = read_raw(out.format, text, source, options);
     if (raw.scaled) {
@@ -308,7 +302,7 @@ ForeignPacking parse_foreign(const std::string& whole, const std::string& source
     out.ids = raw.ids;
     packing.fixed = raw.fixed;
     const auto axes = std::span(raw.boundary).first(d);
-    if (!raw.fixed.empty() && std::find(axes.begin(), axes.end(), Boundary::periodic) != axes.end()) {
+    if (!raw.fixed.empty() && std::ranges::find(axes, Boundary::periodic) != axes.end()) {
         refuse(source, "disks that cannot move were stated, of a periodic packing: expected walls or open boundaries");
     }
     if (!text.ends_with('\n')) {

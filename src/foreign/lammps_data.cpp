@@ -76,7 +76,7 @@ struct DataHeader {
         }
         const auto numbers = [&](std::size_t count) {
             if (header.numbers != count) {
-                line.fail(line.text(), "header line", fmt::format("{} numbers before '{}'", count, header.keyword));
+                line.fail(line.text(), "header line", "{} numbers before '{}'", count, header.keyword);
             }
         };
         if (header.keyword == "atoms") {
@@ -87,7 +87,7 @@ struct DataHeader {
             const auto axis = static_cast<std::size_t>(header.keyword[0] - 'x');
             const double low = line.number(0, "lower bound"), high = line.number(1, "upper bound");
             if (!(low < high)) {
-                line.fail(line.field(1), "upper bound", fmt::format("a number above the lower bound {}", low));
+                line.fail(line.field(1), "upper bound", "a number above the lower bound {}", low);
             }
             box.sides[axis].see(line.field(0));
             box.sides[axis].see(line.field(1));
@@ -151,11 +151,10 @@ std::vector<std::string> columns_of_style(const TextLines& lines, const std::str
     }
     if (known == 0 || known != words.size()) {
         std::vector<std::string_view> names;
-        std::transform(styles.begin(), styles.end(), std::back_inserter(names), [](const Style& s) { return s.name; });
-        lines.fail(fmt::format("section Atoms {}: expected 'Atoms # sphere' or another of {}, or hybrid with several "
-                               "of these; --style sphere and --columns id,type,... state it",
-                               text.empty() ? "does not name its style" : "has style '" + text + "'",
-                               fmt::join(names, ", ")));
+        std::ranges::transform(styles, std::back_inserter(names), [](const Style& s) { return s.name; });
+        lines.fail("section Atoms {}: expected 'Atoms # sphere' or another of {}, or hybrid with several of these; "
+                   "--style sphere and --columns id,type,... state it",
+                   text.empty() ? "does not name its style" : "has style '" + text + "'", fmt::join(names, ", "));
     }
     return out;
 }
@@ -167,8 +166,8 @@ void read_atoms(TextLines& lines, const std::string& named, const DataHeader& he
     const bool defined = options.columns.empty() && find_column(names, "diameter") >= 0;
     if (defined && options.size && options.size->of_word.empty() &&
         (!options.size->column.empty() || options.size->meaning != SizeMeaning::diameter)) {
-        lines.fail("atom style sphere has a diameter by definition: expected no other statement (a constant "
-                   "--diameter may replace it, or --radius type:1=1)");
+        lines.fail("atom style sphere has a diameter by definition: expected no other statement (a constant --diameter "
+                   "may replace it, or --radius type:1=1)");
     }
     Columns columns = find_columns(names, options, fmt::format("{}:{}", lines.source(), lines.number()), raw);
     if (defined && !options.size) {
@@ -227,8 +226,7 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
             in_section = true;
             in_atoms = false;
         } else if (in_atoms) {
-            line.fail(content, "line after the atoms",
-                      fmt::format("a section, or the end: {} atoms were announced", header.atoms));
+            line.fail(content, "line after the atoms", "a section, or the end: {} atoms were announced", header.atoms);
         } else if (!in_section) {
             header.take(HeaderLine(line));
         } else if (std::isalpha(static_cast<unsigned char>(content.front())) != 0) {
@@ -260,7 +258,7 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
     const FrameHeader& header = frame.header;
     const std::string where = fmt::format("{}:{}", source, header.line);
     if (header.rows == 0) {
-        refuse(where, fmt::format("frame {} has 0 atoms: expected at least 1", frame.number));
+        refuse(where, "frame {} has 0 atoms: expected at least 1", frame.number);
     }
     Columns columns = find_columns(header.names, options, where, raw);
     frame.read(std::move(columns), raw);

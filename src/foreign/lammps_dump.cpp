@@ -58,7 +58,7 @@ void read_bounds(TextLines& lines, std::string_view flags_text, FrameHeader& fra
         line.require_size(tilted ? 3 : 2, "bounds of the box");
         const double low = line.number(0, "lower bound"), high = line.number(1, "upper bound");
         if (!(low <= high)) {
-            line.fail(line.field(1), "upper bound", fmt::format("a number above the lower bound {}", low));
+            line.fail(line.field(1), "upper bound", "a number above the lower bound {}", low);
         }
         frame.sides[a].see(line.field(0));
         frame.sides[a].see(line.field(1));
@@ -142,7 +142,7 @@ FrameHeader read_dump_header(TextLines& lines, const std::string& item) {
             read_bounds(lines, text.substr(std::string_view("ITEM: BOX BOUNDS").size()), frame);
         } else if (starts("ITEM: " + item)) {
             if (frame.rows < 0 || !frame.box) {
-                line.fail(text, "item", fmt::format("ITEM: NUMBER OF {} and ITEM: BOX BOUNDS before it", item));
+                line.fail(text, "item", "ITEM: NUMBER OF {} and ITEM: BOX BOUNDS before it", item);
             }
             frame.line = line.number();
             for (std::size_t k = 2; k < line.size(); ++k) {
@@ -150,9 +150,8 @@ FrameHeader read_dump_header(TextLines& lines, const std::string& item) {
             }
             return frame;
         } else {
-            line.fail(text, "item",
-                      fmt::format("TIMESTEP, UNITS, TIME, NUMBER OF {0}, BOX BOUNDS or {0} (a dump of style {1})", item,
-                                  item == "ATOMS" ? "custom" : "local"));
+            line.fail(text, "item", "TIMESTEP, UNITS, TIME, NUMBER OF {0}, BOX BOUNDS or {0} (a dump of style {1})",
+                      item, item == "ATOMS" ? "custom" : "local");
         }
     }
 }

@@ -60,11 +60,11 @@ std::string seen_columns(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
         seen.push_back(name.empty() ? "-" : name);
         const std::string word = likely_name(name);
-        likely.push_back(std::find(likely.begin(), likely.end(), word) == likely.end() ? word : "-");
+        likely.push_back(std::ranges::find(likely, word) == likely.end() ? word : "-");
     }
     std::string out =
         fmt::format("the columns are {}", names.empty() ? "none" : fmt::format("{}", fmt::join(seen, " ")));
-    const auto has = [&](const char* name) { return std::find(likely.begin(), likely.end(), name) != likely.end(); };
+    const auto has = [&](const char* name) { return std::ranges::find(likely, name) != likely.end(); };
     if (likely != seen && has("x") && has("y") && (has("radius") || has("diameter"))) {
         out += fmt::format("; --columns {} names them anew", fmt::join(likely, ","));
     }
@@ -87,8 +87,8 @@ void find_coordinates(Columns& columns, const std::vector<std::string>& names, c
             return;
         }
     }
-    refuse(where, fmt::format("no coordinates: expected columns x y, pos (of XYZ), xu yu, xs ys or xsu ysu; {}",
-                              seen_columns(names)));
+    refuse(where, "no coordinates: expected columns x y, pos (of XYZ), xu yu, xs ys or xsu ysu; {}",
+           seen_columns(names));
 }
 
 /// The column named in a statement. \p what: the quantity of the column.
@@ -96,7 +96,7 @@ int stated_column(const std::vector<std::string>& names, const std::string& colu
                   const std::string& where) {
     const int at = find_column(names, column);
     if (at < 0) {
-        refuse(where, fmt::format("no column '{}' {}: expected one of those; {}", column, what, seen_columns(names)));
+        refuse(where, "no column '{}' {}: expected one of those; {}", column, what, seen_columns(names));
     }
     return at;
 }
@@ -127,9 +127,10 @@ void find_size(Columns& columns, const ForeignOptions& options, const std::strin
                 continue;
             }
             if (columns.size >= 0) {
-                refuse(where, fmt::format("columns '{}' and '{}' both state the size of the disks: expected one, or "
-                                          "the choice with --radius COLUMN or --diameter COLUMN",
-                                          columns.size_name, name));
+                refuse(where,
+                       "columns '{}' and '{}' both state the size of the disks: expected one, or the choice with "
+                       "--radius COLUMN or --diameter COLUMN",
+                       columns.size_name, name);
             }
             columns.size = column;
             columns.size_name = name;
@@ -137,10 +138,10 @@ void find_size(Columns& columns, const ForeignOptions& options, const std::strin
         }
     }
     if (columns.size < 0) {
-        refuse(where, fmt::format("no column states the size of the disks: expected radius or diameter, or the "
-                                  "statement --radius COLUMN|NUMBER or --diameter COLUMN|NUMBER, or of types --radius "
-                                  "type:1=1,2=1.4; {}",
-                                  seen_columns(names)));
+        refuse(where,
+               "no column states the size of the disks: expected radius or diameter, or the statement --radius "
+               "COLUMN|NUMBER or --diameter COLUMN|NUMBER, or of types --radius type:1=1,2=1.4; {}",
+               seen_columns(names));
     }
     raw.notes.push_back(fmt::format("{} from column '{}'", word(raw.meaning), columns.size_name));
 }
@@ -172,27 +173,27 @@ void find_rows(const std::optional<RowsWith>& rows, const std::vector<std::strin
 }
 
 bool is_one_of(std::string_view word, const std::vector<std::string>& words) {
-    return std::find(words.begin(), words.end(), word) != words.end();
+    return std::ranges::find(words, word) != words.end();
 }
 
 } // namespace
 
 std::string lower(std::string_view text) {
     std::string out(text);
-    std::transform(out.begin(), out.end(), out.begin(),
-                   [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    std::ranges::transform(out, out.begin(),
+                           [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
     return out;
 }
 
 void refuse_twice(const std::vector<std::string>& names, const std::string& where) {
     if (const auto twice = columns_twice(names); !twice.empty()) {
-        refuse(where, fmt::format("column '{}' is given twice: expected it once",
-                                  names[static_cast<std::size_t>(twice.front().first)]));
+        refuse(where, "column '{}' is given twice: expected it once",
+               names[static_cast<std::size_t>(twice.front().first)]);
     }
 }
 
 int find_column(const std::vector<std::string>& names, std::string_view name) {
-    const auto at = std::find(names.begin(), names.end(), name);
+    const auto at = std::ranges::find(names, name);
     return at == names.end() ? -1 : static_cast<int>(at - names.begin());
 }
 
@@ -216,7 +217,7 @@ void require_same(const std::vector<std::pair<int, int>>& twice, const std::vect
             row.fail(
                 other,
                 fmt::format("column '{}' is given twice, and the second one", names[static_cast<std::size_t>(first)]),
-                fmt::format("'{}', as in the first one", word));
+                "'{}', as in the first one", word);
         }
     }
 }
@@ -225,7 +226,7 @@ Columns find_columns(const std::vector<std::string>& names, const ForeignOptions
                      Raw& raw) {
     Columns out;
     out.names = options.columns.empty() ? names : options.columns;
-    std::replace(out.names.begin(), out.names.end(), std::string("-"), std::string());
+    std::ranges::replace(out.names, std::string("-"), std::string());
     find_coordinates(out, out.names, where, raw);
     out.first_id = options.first_id;
     out.id = options.first_id ? -1 : find_column(out.names, "id");
@@ -239,7 +240,7 @@ Columns find_columns(const std::vector<std::string>& names, const ForeignOptions
         const std::array<int, 9> used{out.at[0],  out.at[1], out.at[2],
                                       out.id,     out.size,  out.type,
                                       out.select, out.fix,   out.are_molecules ? -1 : out.body};
-        return std::find(used.begin(), used.end(), twice.first) == used.end();
+        return std::ranges::find(used, twice.first) == used.end();
     });
     return out;
 }
@@ -303,17 +304,16 @@ double Rows::size_of_word(const TextLine& line, const std::string& name) const {
             return size;
         }
     }
-    line.fail(word, columns_.size_name, fmt::format("a word whose {} was stated", name));
+    line.fail(word, columns_.size_name, "a word whose {} was stated", name);
 }
 
 void Rows::finish(Raw& raw) {
     if (columns_.select >= 0 && seen_ > 0 && raw.centre.empty()) {
-        refuse(source_, fmt::format("no row has '{}' in the column that selects disks: expected one at least",
-                                    fmt::join(columns_.selected, "' or '")));
+        refuse(source_, "no row has '{}' in the column that selects disks: expected one at least",
+               fmt::join(columns_.selected, "' or '"));
     }
     if (columns_.fix >= 0) {
-        raw.notes.push_back(
-            fmt::format("{} disks cannot move, as stated", std::count(raw.fixed.begin(), raw.fixed.end(), 1)));
+        raw.notes.push_back(fmt::format("{} disks cannot move, as stated", std::ranges::count(raw.fixed, 1)));
     }
     if (columns_.select >= 0) {
         raw.notes.push_back(fmt::format("{} of {} rows are disks, as selected", raw.centre.size(), seen_));
@@ -336,12 +336,12 @@ void Rows::finish(Raw& raw) {
         }
         raw.bodies.clear();
     }
-    std::sort(ids_.begin(), ids_.end());
+    std::ranges::sort(ids_);
     const auto twice =
-        std::adjacent_find(ids_.begin(), ids_.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+        std::ranges::adjacent_find(ids_, [](const auto& a, const auto& b) { return a.first == b.first; });
     if (twice != ids_.end()) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}:{}: id {} was given in line {} already: expected another",
-                                                      source_, (twice + 1)->second, twice->first, twice->second));
+        refuse(ErrorKind::bad_input, "{}:{}: id {} was given in line {} already: expected another", source_,
+               (twice + 1)->second, twice->first, twice->second);
     }
 }
 
@@ -350,14 +350,14 @@ ChosenFrame choose_frame(const std::string& text, const std::string& source, con
     TextLines lines(text, source);
     for (long number = 0;; ++number) {
         if (lines.only_blanks()) {
-            lines.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number,
-                                   options.frame.value_or(number)));
+            lines.fail("the file ends after {} frames: expected frame {} (from 0)", number,
+                       options.frame.value_or(number));
         }
         ChosenFrame frame{number, head(lines), lines, row};
         for (long k = 0; k < frame.header.rows; ++k) {
             const std::string what = fmt::format("{} {} of {} in frame {}", row, k + 1, frame.header.rows, number);
             if (const std::string_view line = lines.take(what); line.starts_with("ITEM:")) {
-                lines.fail(fmt::format("'{}': expected {}", line.substr(0, 40), what));
+                lines.fail("'{}': expected {}", line.substr(0, 40), what);
             }
         }
         if (options.frame ? number == *options.frame : lines.only_blanks()) {

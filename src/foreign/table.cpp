@@ -43,7 +43,7 @@ std::vector<std::string> words_of_comment(std::string_view line, int number, con
     }
     if (names.size() == 2 && names[0] == "format") {
         std::string fields = names[1];
-        std::replace(fields.begin(), fields.end(), '_', ' ');
+        std::ranges::replace(fields, '_', ' ');
         names = names_of(TextLine(fields, number, &source));
     }
     return names;
@@ -52,16 +52,16 @@ std::vector<std::string> words_of_comment(std::string_view line, int number, con
 /// Whether a field is a number, or a mark for a missing or infinite number, and so no name of a column.
 bool is_value(std::string_view field) {
     std::string word(field.substr(field.find_first_not_of("+-") == 1 ? 1 : 0));
-    std::transform(word.begin(), word.end(), word.begin(),
-                   [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    std::ranges::transform(word, word.begin(),
+                           [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
     static constexpr std::array<std::string_view, 7> missing{"nan", "inf", "infinity", "na", "n/a", "null", "none"};
     const bool digit = !word.empty() && (std::isdigit(static_cast<unsigned char>(word[0])) != 0 || word[0] == '.');
-    return digit || std::find(missing.begin(), missing.end(), word) != missing.end();
+    return digit || std::ranges::find(missing, word) != missing.end();
 }
 
 /// Whether a row without any value is one of names; every other row is a disk.
 bool are_names(const std::vector<std::string>& words) {
-    return !words.empty() && std::none_of(words.begin(), words.end(), [](const auto& word) { return is_value(word); });
+    return !words.empty() && std::ranges::none_of(words, [](const auto& word) { return is_value(word); });
 }
 
 /// Takes the names in the last comment before the first row that has columns x and y. Otherwise, with `any` columns, it
@@ -148,10 +148,9 @@ TableNames read_table_names(TextLines& lines, const ForeignOptions& options, Raw
         out.names = options.columns;
     }
     if (out.names.empty()) {
-        first.fail(
-            first.text(), "first row",
-            "names of the columns before it (a row of names, or '# x y r'; where one table is read, --columns x,y,r): "
-            "nothing says which column is what");
+        first.fail(first.text(), "first row",
+                   "names of the columns before it (a row of names, or '# x y r'; where one table is read, --columns "
+                   "x,y,r): nothing says which column is what");
     }
     return out;
 }
@@ -183,7 +182,7 @@ Raw read_braces(const std::string& text, const std::string& source, const Foreig
     (void)lines.find_row();
     const TextLine header = lines.next_row("N = .., L1= { .. }, L2= { .. }", 0);
     if (header.text().size() > longest_header) {
-        header.fail(header.text().substr(0, 40), "header", fmt::format("at most {} characters", longest_header));
+        header.fail(header.text().substr(0, 40), "header", "at most {} characters", longest_header);
     }
     static const std::regex vector(R"(L([12])\s*=\s*\{\s*([^\s,{}]+)\s*,\s*([^\s,{}]+)\s*\})");
     PerAxis<PerAxis<double>> periods{{{}, {}, {0, 0, 1}}};
@@ -207,7 +206,7 @@ Raw read_braces(const std::string& text, const std::string& source, const Foreig
     std::cmatch announced;
     if (!std::regex_search(header.text().begin(), header.text().end(), announced, number) ||
         announced[1] != std::to_string(rows.seen())) {
-        header.fail(header.text(), "header", fmt::format("N = {}, so many rows there are", rows.seen()));
+        header.fail(header.text(), "header", "N = {}, so many rows there are", rows.seen());
     }
     rows.finish(raw);
     return raw;

@@ -58,7 +58,7 @@ std::string lammps_data_text(const Packing& stored, const std::string& title) {
         text += fmt::format("{0} {1} {2}lo {2}hi\n", box.low[a], box.high[a], axis_names[a]);
     }
     const auto& moves = packing.cell.tilt_moves;
-    if (box.tilt != PerTilt<double>{} || std::find(moves.begin(), moves.end(), true) != moves.end()) {
+    if (box.tilt != PerTilt<double>{} || std::ranges::find(moves, true) != moves.end()) {
         // The box is triclinic for LAMMPS, even at tilt 0.
         text += fmt::format("{} {} {} xy xz yz\n", box.tilt[0], box.tilt[1], box.tilt[2]);
     }

@@ -30,7 +30,7 @@ std::map<std::string, std::string> key_values(const TextLine& line) {
                 const char closing = "\"'}]"[quote];
                 const std::size_t stop = rest.find(closing, 1);
                 if (stop == std::string_view::npos) {
-                    line.fail(rest, "value of " + key, fmt::format("an end {}", closing));
+                    line.fail(rest, "value of " + key, "an end {}", closing);
                 }
                 value = std::string(rest.substr(1, stop - 1));
                 rest.remove_prefix(stop + 1);
@@ -81,7 +81,7 @@ std::vector<std::string> property_columns(const TextLine& line, const std::strin
 std::vector<double> numbers_of(const TextLine& line, const std::string& key, const std::string& value,
                                std::array<std::size_t, 2> counts, Digits& digits) {
     std::string blanks = value;
-    std::replace(blanks.begin(), blanks.end(), ',', ' ');
+    std::ranges::replace(blanks, ',', ' ');
     const std::string source;
     const TextLine fields(blanks, 0, &source);
     std::vector<double> out;
@@ -94,7 +94,7 @@ std::vector<double> numbers_of(const TextLine& line, const std::string& key, con
         digits.see(fields.field(k));
     }
     if (out.size() != counts[0] && out.size() != counts[1]) {
-        line.fail(value, key, fmt::format("{} numbers", counts[1]));
+        line.fail(value, key, "{} numbers", counts[1]);
     }
     return out;
 }
@@ -118,7 +118,7 @@ void read_box(const TextLine& line, const std::map<std::string, std::string>& ke
     if (const auto pbc = keys.find("pbc"); pbc != keys.end()) {
         const std::string source;
         std::string text = pbc->second;
-        std::replace(text.begin(), text.end(), ',', ' ');
+        std::ranges::replace(text, ',', ' ');
         const TextLine fields(text, 0, &source);
         if (fields.size() != 3 && fields.size() != 2) {
             line.fail(pbc->second, "pbc", "three of T and F");

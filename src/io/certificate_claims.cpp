@@ -1,7 +1,6 @@
 // The claims of a certificate as text, both ways.
+#include "core/refuse.hpp"
 #include "io/state_json.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -15,7 +14,7 @@ namespace {
 
 Json number(double value, const char* field) {
     if (std::isnan(value)) {
-        throw Error(ErrorKind::bad_input, fmt::format("{} is NaN: expected a number in a certificate", field));
+        refuse(ErrorKind::bad_input, "{} is NaN: expected a number in a certificate", field);
     }
     if (std::isinf(value)) {
         return value > 0 ? "inf" : "-inf";
@@ -26,8 +25,8 @@ Json number(double value, const char* field) {
 Json interval(const Interval& value, const char* field) {
     Json ends = Json::array({number(value.lower, field), number(value.upper, field)});
     if (!(value.lower <= value.upper)) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{} is [{}, {}]: expected ends in increasing order", field, value.lower, value.upper));
+        refuse(ErrorKind::bad_input, "{} is [{}, {}]: expected ends in increasing order", field, value.lower,
+               value.upper);
     }
     return ends;
 }
@@ -51,8 +50,7 @@ Json claim(const CountingClaim& counting) {
 
 Json claim(const VertexClaim& vertex) {
     if (!std::isfinite(vertex.radius)) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("vertex.radius is {}: expected a finite number in a certificate", vertex.radius));
+        refuse(ErrorKind::bad_input, "vertex.radius is {}: expected a finite number in a certificate", vertex.radius);
     }
     return {{"radius", vertex.radius},
             {"unique_radius", number(vertex.unique_radius, "vertex.unique_radius")},
@@ -191,8 +189,8 @@ ForcesClaim forces_of(const Field& field, std::size_t contacts) {
         const long position = zeros.at(k).integer();
         const long least = k == 0 ? 0 : claim.structural_zeros.back() + 1L;
         if (position < least || position >= static_cast<long>(contacts)) {
-            zeros.at(k).fail(fmt::format("increasing positions in the contact list, from {} to {} here", least,
-                                         static_cast<long>(contacts) - 1));
+            zeros.at(k).fail("increasing positions in the contact list, from {} to {} here", least,
+                             static_cast<long>(contacts) - 1);
         }
         claim.structural_zeros.push_back(static_cast<int>(position));
     }
@@ -232,7 +230,7 @@ LoadEndClaim load_end_of(const Field& field, const State& state) {
     field.only({"unbounded", "stress", "opens"});
     claim.stress = interval_of(field.at("stress"));
     claim.opens = contact_from_json(field.at("opens"), state.packing);
-    if (std::find(state.contacts.begin(), state.contacts.end(), claim.opens) == state.contacts.end()) {
+    if (std::ranges::find(state.contacts, claim.opens) == state.contacts.end()) {
         field.at("opens").fail("a contact of the state");
     }
     return claim;

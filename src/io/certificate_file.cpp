@@ -55,7 +55,7 @@ class SortedCopy {
     /// Of a number, true, false or null.
     [[nodiscard]] std::size_t length_of_word() const {
         const auto ends = [](char c) { return c == ',' || c == ']' || c == ' ' || c == '\n' || c == '}'; };
-        return static_cast<std::size_t>(std::find_if(rest_.begin(), rest_.end(), ends) - rest_.begin());
+        return static_cast<std::size_t>(std::ranges::find_if(rest_, ends) - rest_.begin());
     }
     std::string_view take(std::size_t size) {
         const std::string_view taken = rest_.substr(0, size);

@@ -1,6 +1,6 @@
 #include "io/descriptor.hpp"
 
-#include <isostat/core/result.hpp>
+#include "core/refuse.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -97,7 +97,7 @@ bool Descriptor::try_lock() {
 }
 
 void Descriptor::fail() const {
-    throw Error(ErrorKind::cannot_write, fmt::format("{}: cannot write: {}", path_.string(), std::strerror(errno)));
+    refuse(ErrorKind::cannot_write, "{}: cannot write: {}", path_.string(), std::strerror(errno));
 }
 
 } // namespace isostat

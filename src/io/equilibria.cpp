@@ -1,19 +1,15 @@
 // equilibria.csv, both ways: one table of its columns.
 #include "io/equilibria.hpp"
 
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/lines.hpp"
 #include "io/numbers.hpp"
 
-#include <isostat/core/result.hpp>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 namespace isostat {
@@ -111,20 +107,6 @@ template <class Use> void for_each_column(const Row& row, const Use& use) {
     for_each_bound(row, use);
 }
 
-} // namespace
-
-RecordColumns record_columns(const MoreColumns& more) {
-    Load load;
-    load.dimension = more.dimension;
-    load.loaded_axis = more.loaded_axis;
-    if (more.path) {
-        load.path.emplace();
-    }
-    return record_columns(load, more.tilt);
-}
-
-namespace {
-
 /// The names, and whether integers are there.
 template <class Use> void for_each_name(MoreColumns more, const Use& use) {
     EquilibriumRecord any;
@@ -136,7 +118,7 @@ template <class Use> void for_each_name(MoreColumns more, const Use& use) {
 
 [[noreturn]] void bad_field(const std::string& where, const std::string& name, std::string_view text,
                             const std::string& expected) {
-    throw Error(ErrorKind::bad_input, fmt::format("{}: {} is '{}': expected {}", where, name, text, expected));
+    refuse(where, "{} is '{}': expected {}", name, text, expected);
 }
 
 double number_of(std::string_view text, const std::string& where, const std::string& name) {
@@ -210,6 +192,16 @@ EquilibriumRow row_of(const EquilibriumLine& line) {
 
 } // namespace
 
+RecordColumns record_columns(const MoreColumns& more) {
+    Load load;
+    load.dimension = more.dimension;
+    load.loaded_axis = more.loaded_axis;
+    if (more.path) {
+        load.path.emplace();
+    }
+    return record_columns(load, more.tilt);
+}
+
 std::pair<int, int> contact_columns(const Contact& contact) {
     switch (contact.i < 0 ? ContactKind::held : contact.kind) {
     case ContactKind::disk_disk: return {contact.i, contact.j};
@@ -260,9 +252,8 @@ MoreColumns named_columns(std::string_view text, const std::string& source) {
             }
         }
     }
-    throw Error(ErrorKind::bad_input, fmt::format("{}:1: the names of the columns are not those of this program: "
-                                                  "expected {}",
-                                                  source, equilibria_header()));
+    refuse(ErrorKind::bad_input, "{}:1: the names of the columns are not those of this program: expected {}", source,
+           equilibria_header());
 }
 
 std::string equilibrium_row(const EquilibriumRecord& record, const State& state, int previous, MoreColumns more) {
@@ -302,8 +293,7 @@ std::vector<EquilibriumLine> read_equilibrium_lines(const std::filesystem::path&
             fields.push_back(row.substr(at, row.find(',', at) - at));
         }
         if (fields.size() != names.size()) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: {} columns: expected {}, named by the first line",
-                                                          line.where, fields.size(), names.size()));
+            refuse(line.where, "{} columns: expected {}, named by the first line", fields.size(), names.size());
         }
         for (std::size_t k = 0; k < names.size(); ++k) {
             line.value[names[k]] = number_of(fields[k], line.where, names[k]);

@@ -1,8 +1,7 @@
 #include "io/files.hpp"
 
+#include "core/refuse.hpp"
 #include "io/descriptor.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -26,7 +25,7 @@ namespace isostat {
 namespace {
 
 [[noreturn]] void cannot_write(const std::filesystem::path& path, int error) {
-    throw Error(ErrorKind::cannot_write, fmt::format("{}: cannot write: {}", path.string(), std::strerror(error)));
+    refuse(ErrorKind::cannot_write, "{}: cannot write: {}", path.string(), std::strerror(error));
 }
 
 /// The entry of a renamed file is on the disk only when its directory is. Best effort: some file systems refuse it.
@@ -86,9 +85,8 @@ std::string read_packed_text(const std::filesystem::path& path) {
     }
     ::inflateEnd(&stream);
     if (!sound || text.size() > most) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: is packed with gzip and {}", path.string(),
-                                sound ? "larger than 4 GiB: unpack it" : "damaged or cut: expected all of it"));
+        refuse(path.string(), "is packed with gzip and {}",
+               sound ? "larger than 4 GiB: unpack it" : "damaged or cut: expected all of it");
     }
     return text;
 }
@@ -96,19 +94,19 @@ std::string read_packed_text(const std::filesystem::path& path) {
 std::string read_text(const std::filesystem::path& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: is a directory: expected a file", path.string()));
+        refuse(path.string(), "is a directory: expected a file");
     }
     std::ifstream file(path, std::ios::binary);
     if (!file) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
+        refuse(path.string(), "cannot read: {}", std::strerror(errno));
     }
     std::ostringstream text;
     text << file.rdbuf();
     if (file.bad()) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: cannot read to its end", path.string()));
+        refuse(path.string(), "cannot read to its end");
     }
     if (without_byte_order_mark(text.view()).find_first_not_of(" \t\r\n") == std::string_view::npos) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: is empty", path.string()));
+        refuse(path.string(), "is empty");
     }
     return text.str();
 }
@@ -178,14 +176,13 @@ void check_output(const std::filesystem::path& path, const std::string& mark,
     }
     for (const std::filesystem::path& input : inputs) {
         if (std::filesystem::equivalent(path, input, absent)) {
-            throw Error(ErrorKind::usage, fmt::format("{}: is the input {}: expected another name to write to",
-                                                      path.string(), input.string()));
+            refuse(ErrorKind::usage, "{}: is the input {}: expected another name to write to", path.string(),
+                   input.string());
         }
     }
     if (std::filesystem::file_size(path) > 0 && !is_marked(path, mark)) {
-        throw Error(ErrorKind::usage, fmt::format("{}: exists and holds something else than what would be written: "
-                                                  "expected a new name",
-                                                  path.string()));
+        refuse(ErrorKind::usage, "{}: exists and holds something else than what would be written: expected a new name",
+               path.string());
     }
 }
 

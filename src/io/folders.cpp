@@ -1,10 +1,10 @@
 #include "io/folders.hpp"
 
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/record_digests.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fcntl.h>
@@ -96,50 +96,18 @@ std::vector<std::string> comparison_names() {
                   names_in("bundle/", {"nodes.csv", "members.csv", "node_####.json"}));
 }
 
-} // namespace
-
-const FolderKind run_folder{"a run", "run.json", "isostat-run", run_names()};
-const FolderKind ensemble_folder{"an ensemble", "ensemble.json", "isostat-ensemble", ensemble_names()};
-const FolderKind report_folder{"a report", "report.txt", "status  ", report_names()};
-const FolderKind comparison_folder{"a comparison", "comparison.json", "isostat-comparison", comparison_names()};
-
-std::string state_name(int equilibrium) {
-    return fmt::format("states/eq_{:06}.json", equilibrium);
-}
-
-std::string certificate_name(int equilibrium) {
-    return fmt::format("certificates/eq_{:06}.json", equilibrium);
-}
-
-bool FolderKind::owns(std::string_view name) const {
-    return std::any_of(names.begin(), names.end(), [&](const std::string& pattern) {
-        const auto rest = behind(pattern, name);
-        return rest && rest->empty();
-    });
-}
-
-bool FolderKind::owns_folder(std::string_view name) const {
-    return std::any_of(names.begin(), names.end(), [&](const std::string& pattern) {
-        const auto rest = behind(pattern, name);
-        return rest && rest->starts_with('/');
-    });
-}
-
-namespace {
-
 void look(const fs::path& folder, const std::string& before, const FolderKind& kind, FolderContent& found) {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
         const std::string name = before + entry.path().filename().string();
         const fs::file_type type = entry.symlink_status().type();
-        if (type == fs::file_type::not_found || std::count(sample_names.begin(), sample_names.end(), name) > 0) {
+        if (type == fs::file_type::not_found || std::ranges::count(sample_names, name) > 0) {
             continue; // a temporary file that was renamed meanwhile; or what is there before the run of a sample begins
         }
         const bool file = kind.owns(name);
         const std::string whole = name_of_temporary(name);
         if (file || kind.owns_folder(name)) {
             if (type != (file ? fs::file_type::regular : fs::file_type::directory)) {
-                throw Error(ErrorKind::bad_input, fmt::format("{}: expected a {} that is no link",
-                                                              entry.path().string(), file ? "regular file" : "folder"));
+                refuse(entry.path().string(), "expected a {} that is no link", file ? "regular file" : "folder");
             }
             (file ? found.files : found.folders).push_back(name);
         } else if (type == fs::file_type::regular && !whole.empty() && kind.owns(whole)) {
@@ -154,7 +122,7 @@ void look(const fs::path& folder, const std::string& before, const FolderKind& k
 }
 
 bool has(const std::vector<std::string>& names, const char* name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
+    return std::ranges::find(names, name) != names.end();
 }
 
 /// Nothing is there, or what a kill leaves before the mark is written.
@@ -165,8 +133,8 @@ bool is_unused(const FolderContent& content) {
 
 [[noreturn]] void refuse_to_resume(const fs::path& folder, const FolderKind& kind) {
     const std::string_view words = kind.words;
-    throw Error(ErrorKind::bad_input, fmt::format("{}: does not exist: there is no {} to resume",
-                                                  (folder / kind.mark).string(), words.substr(words.find(' ') + 1)));
+    refuse((folder / kind.mark).string(), "does not exist: there is no {} to resume",
+           words.substr(words.find(' ') + 1));
 }
 
 [[noreturn]] void refuse_to_write(const fs::path& folder, const FolderKind& kind, const FolderContent& content) {
@@ -175,8 +143,8 @@ bool is_unused(const FolderContent& content) {
                         : !content.files.empty() ? content.files
                                                  : content.leftovers;
     const std::string holds = other_run ? run_folder.words : names.front();
-    throw Error(ErrorKind::usage, fmt::format("{}: holds {}{}, and is not the folder of {}: expected an empty folder",
-                                              folder.string(), holds, other_run ? " already" : "", kind.words));
+    refuse(ErrorKind::usage, "{}: holds {}{}, and is not the folder of {}: expected an empty folder", folder.string(),
+           holds, other_run ? " already" : "", kind.words);
 }
 
 /// What is there, when it may be taken.
@@ -201,30 +169,56 @@ FolderContent checked(const fs::path& folder, const FolderKind& kind, FolderMode
         }
         check_mark(folder, kind);
         if (mode == FolderMode::fresh) {
-            throw Error(ErrorKind::usage, fmt::format("{}: holds {} already: expected an empty folder, --resume to go "
-                                                      "on or --force to delete it first",
-                                                      folder.string(), kind.words));
+            refuse(ErrorKind::usage,
+                   "{}: holds {} already: expected an empty folder, --resume to go on or --force to delete it first",
+                   folder.string(), kind.words);
         }
         return content;
     } catch (const Error& error) {
         if (resumes || error.kind() == ErrorKind::usage) {
             throw;
         }
-        throw Error(ErrorKind::usage, fmt::format("{} (what is there is not known to be {}: expected an empty folder)",
-                                                  error.what(), kind.words));
+        refuse(ErrorKind::usage, "{} (what is there is not known to be {}: expected an empty folder)", error.what(),
+               kind.words);
     }
 }
 
 Descriptor locked(const fs::path& folder, int flags) {
     Descriptor lock = Descriptor::open(folder / "lock", O_RDWR | O_NOFOLLOW | flags);
     if (!lock.try_lock()) {
-        throw Error(ErrorKind::cannot_write,
-                    fmt::format("{}: another running program writes into this folder", folder.string()));
+        refuse(ErrorKind::cannot_write, "{}: another running program writes into this folder", folder.string());
     }
     return lock;
 }
 
 } // namespace
+
+const FolderKind run_folder{"a run", "run.json", "isostat-run", run_names()};
+const FolderKind ensemble_folder{"an ensemble", "ensemble.json", "isostat-ensemble", ensemble_names()};
+const FolderKind report_folder{"a report", "report.txt", "status  ", report_names()};
+const FolderKind comparison_folder{"a comparison", "comparison.json", "isostat-comparison", comparison_names()};
+
+std::string state_name(int equilibrium) {
+    return fmt::format("states/eq_{:06}.json", equilibrium);
+}
+
+std::string certificate_name(int equilibrium) {
+    return fmt::format("certificates/eq_{:06}.json", equilibrium);
+}
+
+bool FolderKind::owns(std::string_view name) const {
+    return std::ranges::any_of(names, [&](const std::string& pattern) {
+        const auto rest = behind(pattern, name);
+        return rest && rest->empty();
+    });
+}
+
+bool FolderKind::owns_folder(std::string_view name) const {
+    return std::ranges::any_of(names, [&](const std::string& pattern) {
+        const auto rest = behind(pattern, name);
+        return rest && rest->starts_with('/');
+    });
+}
 
 FolderContent content_of(const fs::path& folder, const FolderKind& kind) {
     FolderContent found;
@@ -232,7 +226,7 @@ FolderContent content_of(const fs::path& folder, const FolderKind& kind) {
         look(folder, "", kind, found);
     }
     for (auto* names : {&found.files, &found.folders, &found.leftovers, &found.others}) {
-        std::sort(names->begin(), names->end());
+        std::ranges::sort(*names);
     }
     return found;
 }
@@ -241,14 +235,14 @@ void check_mark(const fs::path& folder, const FolderKind& kind) {
     const fs::path mark = folder / kind.mark;
     if (mark.extension() != ".json") {
         if (!is_marked(mark, kind.format)) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: is not of {}", mark.string(), kind.words));
+            refuse(mark.string(), "is not of {}", kind.words);
         }
         return;
     }
     const json::Json parsed = json::Field::parse(read_text(mark), mark.string());
     const json::Field file(parsed, mark.string());
     if (file.at("format").string() != kind.format) {
-        file.at("format").fail(fmt::format("\"{}\"", kind.format));
+        file.at("format").fail("\"{}\"", kind.format);
     }
     (void)file.at("version").integer(1, 1);
 }

@@ -48,22 +48,21 @@ Json Field::parse(const std::string& text, const std::string& source) {
         return 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
     };
     if (const std::size_t at = text.find('\0'); at != std::string::npos) { // the parser would stop there
-        throw Error(ErrorKind::bad_input, fmt::format("{}:{}: a byte 0: expected text", source, line_of(at)));
+        refuse(ErrorKind::bad_input, "{}:{}: a byte 0: expected text", source, line_of(at));
     }
     std::vector<std::set<std::string>> open; // names of the fields of the objects that are not complete yet
     const Json::parser_callback_t watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
         if (depth > deepest) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: objects and arrays are nested deeper than {} levels: expected fewer", source,
-                                    deepest));
+            refuse(ErrorKind::bad_input, "{}: objects and arrays are nested deeper than {} levels: expected fewer",
+                   source, deepest);
         }
         if (event == Json::parse_event_t::object_start) {
             open.emplace_back();
         } else if (event == Json::parse_event_t::object_end) {
             open.pop_back();
         } else if (event == Json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: the field '{}' comes twice in one object: expected once",
-                                                          source, parsed.get<std::string>()));
+            refuse(ErrorKind::bad_input, "{}: the field '{}' comes twice in one object: expected once", source,
+                   parsed.get<std::string>());
         }
         return true;
     };
@@ -71,20 +70,17 @@ Json Field::parse(const std::string& text, const std::string& source) {
         return Json::parse(text, watch);
     } catch (const nlohmann::json::parse_error& error) {
         const std::size_t at = std::min(error.byte, text.size());
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: {}", source, line_of(at),
-                                at >= text.size() ? "the file ends before its JSON document is complete: truncated?"
-                                                  : "not valid JSON here: expected a complete JSON document"));
+        refuse(ErrorKind::bad_input, "{}:{}: {}", source, line_of(at),
+               at >= text.size() ? "the file ends before its JSON document is complete: truncated?"
+                                 : "not valid JSON here: expected a complete JSON document");
     } catch (const nlohmann::json::exception& error) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: a number is out of the range of double ({})", source, error.what()));
+        refuse(ErrorKind::bad_input, "{}: a number is out of the range of double ({})", source, error.what());
     }
 }
 
 void Field::fail(const std::string& expected) const {
-    throw Error(ErrorKind::bad_input,
-                fmt::format("{}: {} is {}: expected {}", source_, path_.empty() ? "the document" : path_,
-                            shortened(*value_), expected));
+    refuse(ErrorKind::bad_input, "{}: {} is {}: expected {}", source_, path_.empty() ? "the document" : path_,
+           shortened(*value_), expected);
 }
 
 void Field::only(std::initializer_list<const char*> keys) const {
@@ -92,9 +88,9 @@ void Field::only(std::initializer_list<const char*> keys) const {
         fail("an object");
     }
     for (const auto& [key, unused] : value_->items()) {
-        if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: unknown field '{}'{}: expected one of {}", source_, key,
-                                                          path_.empty() ? "" : " in " + path_, fmt::join(keys, ", ")));
+        if (std::ranges::find(keys, key) == keys.end()) {
+            refuse(ErrorKind::bad_input, "{}: unknown field '{}'{}: expected one of {}", source_, key,
+                   path_.empty() ? "" : " in " + path_, fmt::join(keys, ", "));
         }
     }
 }
@@ -105,8 +101,8 @@ Field Field::at(const char* key) const {
     }
     const auto found = value_->find(key);
     if (found == value_->end()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: the field '{}{}{}' is missing", source_, path_, path_.empty() ? "" : ".", key));
+        refuse(ErrorKind::bad_input, "{}: the field '{}{}{}' is missing", source_, path_, path_.empty() ? "" : ".",
+               key);
     }
     return {*found, source_, path_.empty() ? std::string(key) : path_ + "." + key};
 }
@@ -194,6 +190,19 @@ std::string dumped(const Json& document, int indent) {
 
 Json or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json counts(const Counting& c) {
+    return {{"N_f", c.dof_count},    {"N", c.contact_count}, {"rank", c.rank}, {"rank_exact", to_string(c.rank_exact)},
+            {"h", c.hyperstaticity}, {"k", c.mechanisms}};
+}
+
+Json counts(const StrainCounts& of_strains) {
+    Json out;
+    for (std::size_t k = 0; k < strains.size(); ++k) {
+        out[to_string(strains[k])] = counts(of_strains[k]);
+    }
+    return out;
 }
 
 void append_number(std::string& text, double value) {

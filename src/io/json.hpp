@@ -3,8 +3,11 @@
 /// JSON with messages that name file and field. The only place, with the .cpp files that include it, that knows the
 /// JSON library.
 
+#include "core/refuse.hpp"
+
 #include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
+#include <isostat/rigidity/counting.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -30,6 +33,10 @@ class Field {
 
     /// Throws `Error(bad_input)`: "FILE: PATH is VALUE: expected WHAT".
     [[noreturn]] void fail(const std::string& expected) const;
+    template <class... Values>
+    [[noreturn]] void fail(fmt::format_string<Values...> expected, Values&&... values) const {
+        fail(fmt::format(expected, std::forward<Values>(values)...));
+    }
 
     /// "FILE: PATH".
     [[nodiscard]] std::string where() const { return source_ + ": " + path_; }
@@ -76,6 +83,10 @@ std::string dumped(const Json& document, int indent = -1);
 
 /// A number for a record: infinities and NaN, which JSON does not have, become null.
 Json or_null(double value);
+
+/// N_f, N, rank, h and k of a list; and those for each way to strain a cell, by its word.
+Json counts(const Counting& counting);
+Json counts(const StrainCounts& of_strains);
 
 /// Appends a finite number as `Json(value).dump()` writes it, without a document between.
 void append_number(std::string& text, double value);

@@ -22,10 +22,6 @@ std::string_view unquoted(std::string_view text) {
 
 } // namespace
 
-void refuse(const std::string& where, const std::string& what) {
-    throw Error(ErrorKind::bad_input, where + ": " + what);
-}
-
 TextLine::TextLine(std::string_view text, int number, const std::string* source, char separator)
     : text_(text), number_(number), source_(source) {
     const bool commas = separator == blanks_or_commas;
@@ -52,15 +48,14 @@ std::string TextLine::place() const {
 }
 
 void TextLine::fail(std::string_view value, const std::string& name, const std::string& expected) const {
-    throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {} is '{}': expected {}", *source_, number_, name,
-                                                  value.substr(0, longest_quote), expected));
+    refuse(ErrorKind::bad_input, "{}:{}: {} is '{}': expected {}", *source_, number_, name,
+           value.substr(0, longest_quote), expected);
 }
 
 void TextLine::require_size(std::size_t count, const std::string& what) const {
     if (fields_.size() != count) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: {} values in '{}': expected {} ({} values)", *source_, number_, fields_.size(),
-                                text_.substr(0, longest_quote), what, count));
+        refuse(ErrorKind::bad_input, "{}:{}: {} values in '{}': expected {} ({} values)", *source_, number_,
+               fields_.size(), text_.substr(0, longest_quote), what, count);
     }
 }
 
@@ -68,7 +63,7 @@ double TextLine::number(std::size_t k, const std::string& name) const {
     const auto value = written_number(fields_[k]);
     if (!value) {
         std::string point(fields_[k]);
-        std::replace(point.begin(), point.end(), ',', '.');
+        std::ranges::replace(point, ',', '.');
         fail(fields_[k], name,
              finite_number(point) ? "a finite number, with a point (its comma reads as none)" : "a finite number");
     }
@@ -130,7 +125,7 @@ void TextLines::finish(const std::string& what) {
 }
 
 void TextLines::fail(const std::string& message) const {
-    throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {}", *source_, number_, message));
+    refuse(ErrorKind::bad_input, "{}:{}: {}", *source_, number_, message);
 }
 
 std::string_view without_blanks(std::string_view text) {

@@ -2,14 +2,13 @@
 /// \file
 /// Text read line by line, with messages that name file, line, value and what was expected.
 
+#include "core/refuse.hpp"
+
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace isostat {
-
-/// Throws `Error(bad_input)`: "WHERE: WHAT".
-[[noreturn]] void refuse(const std::string& where, const std::string& what);
 
 /// A separator of fields that stands for blanks, tabs and commas.
 inline constexpr char blanks_or_commas = '\0';
@@ -30,6 +29,11 @@ class TextLine {
 
     /// Throws `Error(bad_input)`: "FILE:LINE: NAME is 'VALUE': expected WHAT".
     [[noreturn]] void fail(std::string_view value, const std::string& name, const std::string& expected) const;
+    template <class... Values>
+    [[noreturn]] void fail(std::string_view value, const std::string& name, fmt::format_string<Values...> expected,
+                           Values&&... values) const {
+        fail(value, name, fmt::format(expected, std::forward<Values>(values)...));
+    }
     /// Throws when there are not `count` fields.
     void require_size(std::size_t count, const std::string& what) const;
     /// A `written_number`, all of the field. \pre k < size()
@@ -73,6 +77,9 @@ class TextLines {
     [[nodiscard]] int number() const { return number_; }
     [[nodiscard]] const std::string& source() const { return *source_; }
     [[noreturn]] void fail(const std::string& message) const;
+    template <class... Values> [[noreturn]] void fail(fmt::format_string<Values...> message, Values&&... values) const {
+        fail(fmt::format(message, std::forward<Values>(values)...));
+    }
 
   private:
     std::string_view rest_;

@@ -3,7 +3,6 @@
 #include "io/state_json.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>
@@ -142,7 +141,7 @@ template <class Value> void read_from(const json::Field& document, const std::st
         constexpr long most = sizeof(Value) == sizeof(int) ? std::numeric_limits<int>::max() : 1L << 53;
         const long count = field.integer();
         if (count < 0 || count > most) {
-            field.fail(fmt::format("a count, an integer from 0 to {}", most));
+            field.fail("a count, an integer from 0 to {}", most);
         }
         value = static_cast<Value>(count);
     }

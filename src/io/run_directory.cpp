@@ -1,3 +1,4 @@
+#include "core/refuse.hpp"
 #include "core/work.hpp"
 #include "io/descriptor.hpp"
 #include "io/equilibria.hpp"
@@ -7,7 +8,6 @@
 #include "io/record_digests.hpp"
 #include "io/record_text.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
@@ -117,13 +117,12 @@ void RunDirectory::open_for_resume() {
     const Field old(parsed, run.string());
     previous_status_ = old.at("status").string();
     if (old.at("scene").string() != header_.scene_text) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: the run is of another scene ({}): expected the text of {}",
-                                                      run.string(), old.at("scene_file").string(), header_.scene_name));
+        refuse(run.string(), "the run is of another scene ({}): expected the text of {}", old.at("scene_file").string(),
+               header_.scene_name);
     }
     if (old.at("program").string() != header_.program) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: the run was made by {}: expected {}, the same bits are not promised otherwise",
-                                run.string(), old.at("program").string(), header_.program));
+        refuse(run.string(), "the run was made by {}: expected {}, the same bits are not promised otherwise",
+               old.at("program").string(), header_.program);
     }
     header_.command = old.at("command").string(); // states tell how the run was started
     read_checkpoint();
@@ -229,7 +228,7 @@ void RunDirectory::on_equilibrium(const EquilibriumRecord& record, const State& 
     last_record_ = record;
     last_strain_ = record.strain;
     const bool every = header_.states_every > 0 && record.number % header_.states_every == 0;
-    const bool kept = std::find(header_.keep.begin(), header_.keep.end(), record.number) != header_.keep.end();
+    const bool kept = std::ranges::find(header_.keep, record.number) != header_.keep.end();
     if (first || every || kept || segment_done()) {
         const std::string name = state_name(record.number);
         write_state(directory_ / name, last_, last_forces_);

@@ -35,7 +35,7 @@ fs::path named_input(const fs::path& folder, const std::string& name, const std:
                                 where, name, why));
     };
     const fs::path named = name;
-    if (named.is_absolute() || std::find(named.begin(), named.end(), "..") != named.end()) {
+    if (named.is_absolute() || std::ranges::find(named, "..") != named.end()) {
         refuse("which leads elsewhere");
     }
     fs::path path = folder / named;
@@ -58,10 +58,14 @@ void Section::fail(const std::string& key, const std::string& expected) const {
     fail(*table_->get(key), key, expected);
 }
 
-void Section::fail(const toml::node& node, const std::string& key, const std::string& expected,
-                   const std::string& found) const {
+void Section::fail(const toml::node& node, const std::string& key, const std::string& expected) const {
+    fail_found(node, key, text_of(node), expected);
+}
+
+void Section::fail_found(const toml::node& node, const std::string& key, const std::string& found,
+                         const std::string& expected) const {
     throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {}{} is {}: expected {}", source_, line_of_node(node), key,
-                                                  within(), found.empty() ? text_of(node) : found, expected));
+                                                  within(), found, expected));
 }
 
 void Section::refuse(const std::string& key, const std::string& what) const {
@@ -77,7 +81,7 @@ int Section::line_of(const std::string& key) const {
 }
 
 const toml::node* Section::node(const std::string& key) {
-    if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
+    if (std::ranges::find(known_, key) == known_.end()) {
         known_.push_back(key);
     }
     return table_ == nullptr ? nullptr : table_->get(key);
@@ -182,7 +186,7 @@ const toml::array& Section::array(const toml::node& node, const std::string& key
 
 std::size_t Section::place(const std::string& key, std::size_t fallback, const std::vector<std::string>& words) {
     const auto given = string(key);
-    const auto at = given ? std::find(words.begin(), words.end(), *given) - words.begin() : static_cast<long>(fallback);
+    const auto at = given ? std::ranges::find(words, *given) - words.begin() : static_cast<long>(fallback);
     if (static_cast<std::size_t>(at) == words.size()) {
         fail(key, fmt::format("one of \"{}\"", fmt::join(words, "\", \"")));
     }
@@ -194,7 +198,7 @@ void Section::finish() const {
         return;
     }
     for (const auto& [key, node] : *table_) {
-        if (std::find(known_.begin(), known_.end(), key.str()) == known_.end()) {
+        if (std::ranges::find(known_, key.str()) == known_.end()) {
             throw Error(ErrorKind::bad_input,
                         fmt::format("{}:{}: unknown key '{}'{}: expected one of {}", source_, key.source().begin.line,
                                     key.str(), within(), fmt::join(known_, ", ")));

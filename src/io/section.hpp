@@ -3,6 +3,8 @@
 /// One table of a TOML file, and files that are named in other files. A key becomes known when it is read; a key of the
 /// file that was never read is an error. So the list of known keys cannot disagree with what is read.
 
+#include "core/refuse.hpp"
+
 #include <isostat/core/verdict.hpp>
 
 #include <toml++/toml.h>
@@ -22,11 +24,26 @@ class Section {
 
     /// Throws `Error(bad_input)`: "FILE:LINE: KEY in [NAME] is VALUE: expected WHAT".
     [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
-    /// The same of a node in the value of the key, at its line; `found`: what to say in the place of its text.
-    [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& expected,
-                           const std::string& found = "") const;
+    template <class... Values>
+    [[noreturn]] void fail(const std::string& key, fmt::format_string<Values...> expected, Values&&... values) const {
+        fail(key, fmt::format(expected, std::forward<Values>(values)...));
+    }
+    /// The same of a node in the value of the key, at its line.
+    [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& expected) const;
+    template <class... Values>
+    [[noreturn]] void fail(const toml::node& node, const std::string& key, fmt::format_string<Values...> expected,
+                           Values&&... values) const {
+        fail(node, key, fmt::format(expected, std::forward<Values>(values)...));
+    }
+    /// The same with what was found there in the place of the text of the node.
+    [[noreturn]] void fail_found(const toml::node& node, const std::string& key, const std::string& found,
+                                 const std::string& expected) const;
     /// The same without a value: "FILE:LINE: WHAT", at the line of the key (or of the table when the key is absent).
     [[noreturn]] void refuse(const std::string& key, const std::string& what) const;
+    template <class... Values>
+    [[noreturn]] void refuse(const std::string& key, fmt::format_string<Values...> what, Values&&... values) const {
+        refuse(key, fmt::format(what, std::forward<Values>(values)...));
+    }
 
     [[nodiscard]] bool has(const std::string& key) const { return table_ != nullptr && table_->contains(key); }
     [[nodiscard]] int line_of(const std::string& key) const;

@@ -1,3 +1,4 @@
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/state_json.hpp"
@@ -7,7 +8,6 @@
 #include "packing/load_faults.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
@@ -48,7 +48,7 @@ void read_disks(const Field& document, Packing& packing) {
     const std::size_t size = radius_first ? 0 : packing.axes();
     const Field disks = document.at("disks");
     if (disks.size() == 0) {
-        disks.fail(fmt::format("at least one disk {}", order));
+        disks.fail("at least one disk {}", order);
     }
     for (std::size_t i = 0; i < disks.size(); ++i) {
         const Field row = disks.at(i);
@@ -133,7 +133,7 @@ void read_bodies(const Field& document, Packing& packing) {
         packing.bars.push_back(
             {disk(bar.at(std::size_t{0})), disk(bar.at(std::size_t{1})), bar.at(std::size_t{2}).number()});
     }
-    std::sort(packing.bars.begin(), packing.bars.end());
+    std::ranges::sort(packing.bars);
     for (std::size_t b = 0; document.has("arcs") && b < document.at("arcs").size(); ++b) {
         const Field ring = document.at("arcs").at(b);
         packing.arcs.emplace_back();
@@ -174,7 +174,7 @@ Packing packing_of(const Field& document) {
         for (std::size_t k = 0; k < fixed.size(); ++k) {
             const long i = fixed.at(k).integer();
             if (i < 0 || i >= packing.disk_count()) {
-                fixed.at(k).fail(fmt::format("a disk from 0 to {}", packing.disk_count() - 1));
+                fixed.at(k).fail("a disk from 0 to {}", packing.disk_count() - 1);
             }
             if (packing.fixed[static_cast<std::size_t>(i)] != 0) {
                 fixed.at(k).fail("each disk once");
@@ -189,12 +189,10 @@ Packing packing_of(const Field& document) {
 /// Lists that name no bar have all of them; the others name each.
 void complete_bars(State& state, const std::string& source) {
     const std::vector<Bar>& bars = state.packing.bars;
-    const auto listed = static_cast<std::size_t>(std::count_if(
-        state.contacts.begin(), state.contacts.end(), [](const Contact& c) { return c.kind == ContactKind::bar; }));
+    const auto listed = static_cast<std::size_t>(
+        std::ranges::count_if(state.contacts, [](const Contact& c) { return c.kind == ContactKind::bar; }));
     if (listed != 0 && listed != bars.size()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: contacts has {} of {} bars: expected all, or to leave them out", source, listed,
-                                bars.size()));
+        refuse(source, "contacts has {} of {} bars: expected all, or to leave them out", listed, bars.size());
     }
     for (std::size_t k = listed; k < bars.size(); ++k) {
         state.contacts.push_back({ContactKind::bar, bars[k].i, bars[k].j});
@@ -203,10 +201,10 @@ void complete_bars(State& state, const std::string& source) {
 
 void require_balance(const Field& document, const char* name, const std::vector<double>& values, const Cell& cell) {
     if (const auto rest = unbalanced<mpq_class>(values, cell)) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{} along {} sum to {:.3g}: expected exactly 0 along a periodic axis (give one disk "
-                                "minus the sum of the others)",
-                                document.at(name).where(), axis_names[rest->first], rest->second.get_d()));
+        refuse(ErrorKind::bad_input,
+               "{} along {} sum to {:.3g}: expected exactly 0 along a periodic axis (give one disk minus the sum of "
+               "the others)",
+               document.at(name).where(), axis_names[rest->first], rest->second.get_d());
     }
 }
 
@@ -226,7 +224,7 @@ void read_tilts(const Field& field, const Packing& packing, Load& load) {
         const std::vector<double> tilt =
             field.at("reference_tilt")
                 .numbers(packing.cell.any() ? packing.tilts() : 0, "one number per tilt of a periodic cell");
-        std::copy(tilt.begin(), tilt.end(), load.reference_tilt.begin());
+        std::ranges::copy(tilt, load.reference_tilt.begin());
     } else if (field.has("reference_length")) {
         load.reference_tilt.fill(0); // a rectangle
     }
@@ -238,15 +236,14 @@ void read_path(const Field& field, const Packing& packing, Load& load) {
     path.only({"stress", "direction", "t"});
     const std::vector<double> rates = path.at("direction").numbers();
     if (const std::string fault = fault_of_path(packing, rates); !fault.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: a direction in the space of stresses, {}", path.at("direction").where(), fault));
+        refuse(path.at("direction").where(), "a direction in the space of stresses, {}", fault);
     }
     const Field stress = path.at("stress");
     const std::vector<double> start = stress.numbers(rates.size(), "as many numbers as direction has");
     const Load said = load;
     StressPath& along = load.path.emplace();
-    std::copy(rates.begin(), rates.end(), along.rate.begin());
-    std::copy(start.begin(), start.end(), along.at.begin());
+    std::ranges::copy(rates, along.rate.begin());
+    std::ranges::copy(start, along.at.begin());
     const double t = path.at("t").number();
     constexpr double farthest = 1e200; // the parts of a product with a rate are doubles then (`exact_stress`)
     if (t != 0 && !(std::abs(t) >= 1 / farthest && std::abs(t) <= farthest)) {
@@ -259,9 +256,8 @@ void read_path(const Field& field, const Packing& packing, Load& load) {
     const bool differs = (field.has("stress") && said.stress != load.stress) ||
                          (field.has("shear") && said.shear != load.shear) || load.loaded_axis != packing.dimension - 1;
     if (differs) {
-        field.fail(
-            "stress and shear that are path.stress + t path.direction, to the nearest double, and the last axis as "
-            "loaded_axis");
+        field.fail("stress and shear that are path.stress + t path.direction, to the nearest double, and the last axis "
+                   "as loaded_axis");
     }
 }
 
@@ -277,7 +273,7 @@ Load load_of(const Field& document, const Packing& packing) {
         if (field.has("kind")) {
             load.kind = field.at("kind").word(load_kind_words);
             const auto& tilts = packing.cell.tilt_moves;
-            if (load.kind == LoadKind::true_stress && std::find(tilts.begin(), tilts.end(), true) != tilts.end()) {
+            if (load.kind == LoadKind::true_stress && std::ranges::find(tilts, true) != tilts.end()) {
                 field.at("kind").fail("\"nominal\" where a tilt moves: true stresses have no potential there");
             }
         }
@@ -299,15 +295,15 @@ Load load_of(const Field& document, const Packing& packing) {
         if (field.has("loaded_axis")) {
             const long axis = field.at("loaded_axis").integer();
             const auto& tilts = packing.cell.tilt_moves;
-            const bool any_tilt = packing.cell.any() && std::find(tilts.begin(), tilts.end(), true) != tilts.end();
+            const bool any_tilt = packing.cell.any() && std::ranges::find(tilts, true) != tilts.end();
             const bool is_tilt = any_tilt && axis >= packing.dimension && axis < packing.dimension + long{most_tilts} &&
                                  tilts[static_cast<std::size_t>(axis - packing.dimension)];
             if (!is_tilt && (axis < 0 || axis >= packing.dimension)) {
                 field.at("loaded_axis")
-                    .fail(fmt::format("an axis from 0 to {}{}", packing.dimension - 1,
-                                      !any_tilt                    ? ""
-                                      : packing.dimension == plane ? ", or the tilt, 2"
-                                                                   : ", or a tilt that moves, from 3 on"));
+                    .fail("an axis from 0 to {}{}", packing.dimension - 1,
+                          !any_tilt                    ? ""
+                          : packing.dimension == plane ? ", or the tilt, 2"
+                                                       : ", or a tilt that moves, from 3 on");
             }
             load.loaded_axis = static_cast<int>(axis);
         }
@@ -318,12 +314,16 @@ Load load_of(const Field& document, const Packing& packing) {
     load.disk_force = vectors(document, "disk_force", packing.layout());
     load.infinitesimal = vectors(document, "infinitesimal", packing.layout());
     require_balance(document, "disk_force", load.disk_force, packing.cell);
-    if (packing.cell.keeps_shape &&
-        std::any_of(load.disk_force.begin(), load.disk_force.end(), [](double f) { return f != 0; })) {
+    if (packing.cell.keeps_shape && std::ranges::any_of(load.disk_force, [](double f) { return f != 0; })) {
         document.at("disk_force").fail("no force on a disk, as the cell keeps its shape");
     }
     require_balance(document, "infinitesimal", load.infinitesimal, packing.cell);
     return load;
+}
+
+StateFile of_box(StateFile file, const std::string& source) {
+    require_box(file.state.packing, source, "run, inspect, plateau, certify and verify take it, this command");
+    return file;
 }
 
 } // namespace
@@ -373,15 +373,6 @@ StateFile json::state_from_json(const Field& document, const std::string& source
     return file;
 }
 
-namespace {
-
-StateFile of_box(StateFile file, const std::string& source) {
-    require_box(file.state.packing, source, "run, inspect, plateau, certify and verify take it, this command");
-    return file;
-}
-
-} // namespace
-
 StateFile parse_any_state(const std::string& text, const std::string& source, Dimensions dimensions) {
     const json::Json parsed = Field::parse(text, source);
     StateFile file = json::state_from_json(Field(parsed, source), source);
@@ -419,9 +410,10 @@ StateFile read_any_state(const std::filesystem::path& path, Dimensions dimension
             throw;
         }
         if (format.starts_with("lammps") || (format == "xyz" && text.find("Properties=") != std::string::npos)) {
-            throw Error(error.kind(), fmt::format("{}: a packing of another program ({}): expected a state or a "
-                                                  "vertex text; isostat import makes a state of it",
-                                                  path.string(), format));
+            refuse(error.kind(),
+                   "{}: a packing of another program ({}): expected a state or a vertex text; isostat import makes a "
+                   "state of it",
+                   path.string(), format);
         }
         // The first line that is no comment: where it begins with a number, what is wrong with the vertex text was
         // told.
@@ -434,11 +426,10 @@ StateFile read_any_state(const std::filesystem::path& path, Dimensions dimension
             throw;
         }
         constexpr std::size_t few = 40;
-        throw Error(error.kind(),
-                    fmt::format("{}: neither a state (JSON) nor a vertex text (the number of disks comes "
-                                "first; isostat import reads packings of other programs): it begins "
-                                "with '{}'",
-                                path.string(), text::shown(rest.substr(0, std::min(rest.find('\n'), few)))));
+        refuse(error.kind(),
+               "{}: neither a state (JSON) nor a vertex text (the number of disks comes first; isostat import reads "
+               "packings of other programs): it begins with '{}'",
+               path.string(), text::shown(rest.substr(0, std::min(rest.find('\n'), few))));
     }
 }
 

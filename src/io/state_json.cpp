@@ -1,9 +1,8 @@
 #include "io/state_json.hpp"
 
 #include "contact/images.hpp"
+#include "core/refuse.hpp"
 #include "packing/words.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -17,7 +16,7 @@ namespace {
 int disk_index(const Field& field, int disks) {
     const long i = field.integer();
     if (i < 0 || i >= disks) {
-        field.fail(fmt::format("a disk from 0 to {}", disks - 1));
+        field.fail("a disk from 0 to {}", disks - 1);
     }
     return static_cast<int>(i);
 }
@@ -35,8 +34,8 @@ Image image_of(const Field& field, const Packing& packing) {
             field.at(a).fail("0, as that axis has walls");
         }
         if (m < -farthest_image || m > farthest_image) {
-            field.at(a).fail(fmt::format("from {} to {} periods: put the disks into the cell first", -farthest_image,
-                                         farthest_image));
+            field.at(a).fail("from {} to {} periods: put the disks into the cell first", -farthest_image,
+                             farthest_image);
         }
         image.m[a] = static_cast<std::int8_t>(m);
     }
@@ -52,30 +51,6 @@ Contact pair_from_json(const Field& field, int i, int j, const Packing& packing)
     return pair_of(i, j, image);
 }
 
-} // namespace
-
-Json contact_to_json(const Contact& contact, int dimension) {
-    switch (contact.kind) {
-    case ContactKind::disk_disk: {
-        Json pair = Json::array({contact.i, contact.j});
-        if (!contact.image.is_here()) {
-            pair.push_back(Json::array());
-            for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
-                pair.back().push_back(static_cast<int>(contact.image.m[a]));
-            }
-        }
-        return pair;
-    }
-    case ContactKind::lower_wall:
-    case ContactKind::upper_wall: return Json::array({contact.i, wall_name(contact)});
-    case ContactKind::bar: return Json::array({"bar", contact.i, contact.j});
-    case ContactKind::held: return Json::array({"held", contact.i});
-    }
-    return {};
-}
-
-namespace {
-
 Contact contact_of(const Field& field, const Packing& packing) {
     if (field.size() != 3) {
         field.require_size(2, "[disk, disk], [disk, disk, [mx, my]], [disk, \"wall\"] or [\"held\", coordinate]");
@@ -87,7 +62,7 @@ Contact contact_of(const Field& field, const Packing& packing) {
         const int i = disk_index(second, packing.disk_count());
         const int j = disk_index(field.at(std::size_t{2}), packing.disk_count());
         const auto& bars = packing.bars;
-        if (std::none_of(bars.begin(), bars.end(), [&](const Bar& bar) { return bar.i == i && bar.j == j; })) {
+        if (std::ranges::none_of(bars, [&](const Bar& bar) { return bar.i == i && bar.j == j; })) {
             field.fail("a bar of \"bars\"");
         }
         return {ContactKind::bar, i, j};
@@ -97,7 +72,7 @@ Contact contact_of(const Field& field, const Packing& packing) {
         const long coordinate = second.integer();
         const long limit = static_cast<long>(packing.q.size());
         if (first.string() != "held" || coordinate < 0 || coordinate >= limit) {
-            field.fail(fmt::format("[\"held\", coordinate] with a coordinate from 0 to {}", limit - 1));
+            field.fail("[\"held\", coordinate] with a coordinate from 0 to {}", limit - 1);
         }
         return {ContactKind::held, static_cast<int>(coordinate), 0};
     }
@@ -116,36 +91,9 @@ Contact contact_of(const Field& field, const Packing& packing) {
         }
         return {lower ? ContactKind::lower_wall : ContactKind::upper_wall, i, static_cast<int>(a)};
     }
-    second.fail(fmt::format("a grain or one of \"left\", \"right\", \"bottom\", \"top\"{}",
-                            packing.dimension == plane ? "" : ", \"back\", \"front\""));
+    second.fail("a grain or one of \"left\", \"right\", \"bottom\", \"top\"{}",
+                packing.dimension == plane ? "" : ", \"back\", \"front\"");
 }
-
-} // namespace
-
-Contact contact_from_json(const Field& field, const Packing& packing) {
-    const Contact contact = contact_of(field, packing);
-    if (const Json written = contact_to_json(contact, packing.dimension); written != field.value()) {
-        field.fail(fmt::format("{}: a contact has one spelling", written.dump()));
-    }
-    return contact;
-}
-
-void refuse_duplicates(const std::vector<Contact>& contacts, int dimension, const std::string& source,
-                       const std::string& name) {
-    std::vector<std::size_t> order(contacts.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return contacts[a] < contacts[b]; });
-    for (std::size_t k = 1; k < order.size(); ++k) {
-        if (contacts[order[k]] == contacts[order[k - 1]]) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: {}[{}] is {}, as {}[{}] already: expected each contact once", source, name,
-                                    order[k], to_string(contacts[order[k]], dimension), name, order[k - 1]));
-        }
-    }
-}
-
-namespace {
 
 Json terms(const std::vector<std::pair<Contact, Enclosure>>& list, int dimension) {
     Json rows = Json::array();
@@ -174,6 +122,47 @@ std::vector<std::pair<Contact, Enclosure>> terms_from(const Field& field, const 
 }
 
 } // namespace
+
+Json contact_to_json(const Contact& contact, int dimension) {
+    switch (contact.kind) {
+    case ContactKind::disk_disk: {
+        Json pair = Json::array({contact.i, contact.j});
+        if (!contact.image.is_here()) {
+            pair.push_back(Json::array());
+            for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
+                pair.back().push_back(static_cast<int>(contact.image.m[a]));
+            }
+        }
+        return pair;
+    }
+    case ContactKind::lower_wall:
+    case ContactKind::upper_wall: return Json::array({contact.i, wall_name(contact)});
+    case ContactKind::bar: return Json::array({"bar", contact.i, contact.j});
+    case ContactKind::held: return Json::array({"held", contact.i});
+    }
+    return {};
+}
+
+Contact contact_from_json(const Field& field, const Packing& packing) {
+    const Contact contact = contact_of(field, packing);
+    if (const Json written = contact_to_json(contact, packing.dimension); written != field.value()) {
+        field.fail("{}: a contact has one spelling", written.dump());
+    }
+    return contact;
+}
+
+void refuse_duplicates(const std::vector<Contact>& contacts, int dimension, const std::string& source,
+                       const std::string& name) {
+    std::vector<std::size_t> order(contacts.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return contacts[a] < contacts[b]; });
+    for (std::size_t k = 1; k < order.size(); ++k) {
+        if (contacts[order[k]] == contacts[order[k - 1]]) {
+            refuse(source, "{}[{}] is {}, as {}[{}] already: expected each contact once", name, order[k],
+                   to_string(contacts[order[k]], dimension), name, order[k - 1]);
+        }
+    }
+}
 
 Json perturbation_to_json(const RadiusPerturbation& perturbation, int dimension) {
     Json object;

@@ -21,7 +21,7 @@ using json::Json;
 /// JSON has no NaN and no infinity: a state that holds one is not written at all.
 double finite(double value, const char* field) {
     if (!std::isfinite(value)) {
-        throw Error(ErrorKind::bad_input, fmt::format("{} is {}: expected a finite number in a state", field, value));
+        refuse(ErrorKind::bad_input, "{} is {}: expected a finite number in a state", field, value);
     }
     return value;
 }

@@ -1,9 +1,9 @@
 #include "io/toml.hpp"
 
+#include "core/refuse.hpp"
 #include "io/text.hpp"
 
 #include <isostat/core/machine.hpp>
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -72,14 +72,14 @@ int line_of_long_name(std::string_view text) {
 toml::table parse_toml(std::string_view text, const std::string& source) {
     require_floating_point();
     if (const int line = line_of_long_name(text)) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}:{}: a dotted name has more than {} parts: expected fewer",
-                                                      source, line, most_parts));
+        refuse(ErrorKind::bad_input, "{}:{}: a dotted name has more than {} parts: expected fewer", source, line,
+               most_parts);
     }
     try {
         return toml::parse(text, source);
     } catch (const toml::parse_error& error) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: not valid TOML: {}", source, error.source().begin.line, error.description()));
+        refuse(ErrorKind::bad_input, "{}:{}: not valid TOML: {}", source, error.source().begin.line,
+               error.description());
     }
 }
 

@@ -4,8 +4,6 @@
 #include "io/lines.hpp"
 #include "io/state_json.hpp"
 
-#include <isostat/core/result.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -88,7 +86,7 @@ State parse_vertex_text(const std::string& text, const std::string& source) {
     }
     rows.finish(fmt::format("the end of the file after {} contacts", contacts));
     json::refuse_duplicates(state.contacts, plane, source, "contacts");
-    std::sort(state.contacts.begin(), state.contacts.end());
+    std::ranges::sort(state.contacts);
     state.load.refer_to(state.packing);
     state.provenance = json::dumped({{"converted_from", source}});
     return state;

@@ -1,8 +1,7 @@
 #include "packing/arc_bodies.hpp"
 
+#include "core/refuse.hpp"
 #include "packing/bodies.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -172,9 +171,7 @@ ArcBodies::Turn ArcBodies::turn(const std::vector<int>& ring) const {
 }
 
 void validate_arcs(const Packing& packing, const std::string& source) {
-    const auto bad = [&](std::size_t b, const std::string& what) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: arcs[{}]: {}", source, b, what));
-    };
+    const auto bad = [&](std::size_t b, const std::string& what) { refuse(source, "arcs[{}]: {}", b, what); };
     const Bodies bodies(packing);
     std::vector<unsigned char> used(packing.radius.size());
     for (std::size_t b = 0; b < packing.arcs.size(); ++b) {
@@ -192,8 +189,8 @@ void validate_arcs(const Packing& packing, const std::string& source) {
                                    packing.disk_count() - 1));
             }
         }
-        const auto members = std::count_if(ring.begin(), ring.end(),
-                                           [&](int member) { return bodies.of(member) == bodies.of(ring.front()); });
+        const auto members =
+            std::ranges::count_if(ring, [&](int member) { return bodies.of(member) == bodies.of(ring.front()); });
         std::size_t in_body = 0;
         for (int i = 0; i < packing.disk_count(); ++i) {
             in_body += bodies.of(i) == bodies.of(ring.front()) ? 1 : 0;
@@ -210,7 +207,7 @@ void validate_arcs(const Packing& packing, const std::string& source) {
             const double side = large - small;
             const double rest = side - large;
             const bool exact = (large - (side - rest)) - (small + rest) == 0; // what was rounded away (Knuth)
-            const auto bar = std::lower_bound(packing.bars.begin(), packing.bars.end(), Bar{i, j, 0});
+            const auto bar = std::ranges::lower_bound(packing.bars, Bar{i, j, 0});
             const bool there = bar != packing.bars.end() && bar->i == i && bar->j == j;
             if (!there || !exact || !(side > 0) || bar->length != side) {
                 bad(b, fmt::format("members {} and {} of radii {} and {}, {}: expected a bar of exactly the difference "
@@ -234,10 +231,10 @@ void validate_arcs(const Packing& packing, const std::string& source) {
 
 void require_no_arcs(const Packing& packing, const std::string& source, const std::string& what) {
     if (!packing.arcs.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: {} bodies bounded by arcs; {} does not take them: inspect, certify, verify (of "
-                                "certificates) and report do",
-                                source, packing.arcs.size(), what));
+        refuse(source,
+               "{} bodies bounded by arcs; {} does not take them: inspect, certify, verify (of certificates) and "
+               "report do",
+               packing.arcs.size(), what);
     }
 }
 

@@ -1,9 +1,8 @@
 #include "packing/bodies.hpp"
 
+#include "core/refuse.hpp"
 #include "packing/arc_bodies.hpp"
 #include "packing/words.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -88,12 +87,10 @@ std::vector<int> corners_of(const Packing& packing, const std::vector<int>& body
         const auto [member, distance] = farthest(corners);
         if (!(distance > known)) {
             static constexpr std::array places{"in one place", "on one line", "in one plane"};
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: the {} members of the body of {} {} lie {} as far as is known (to {:.2g}): "
-                                    "expected a rigid body; one more member beside them and inside another one touches "
-                                    "nothing and makes it rigid",
-                                    source, body.size(), grain_word(packing.dimension), body.front(),
-                                    places[corners.size() - 1], known));
+            refuse(source,
+                   "the {} members of the body of {} {} lie {} as far as is known (to {:.2g}): expected a rigid body; "
+                   "one more member beside them and inside another one touches nothing and makes it rigid",
+                   body.size(), grain_word(packing.dimension), body.front(), places[corners.size() - 1], known);
         }
         corners.push_back(member);
     }
@@ -149,7 +146,7 @@ std::vector<Arc> outer_arcs(const Packing& packing, const std::vector<int>& body
             cover(middle - half, middle + half);
         }
     }
-    std::sort(covered.begin(), covered.end());
+    std::ranges::sort(covered);
     std::vector<Arc> outer;
     double end = 0;
     for (const Arc& arc : covered) {
@@ -232,21 +229,21 @@ std::vector<Bar> bars_of_bodies(const Packing& packing, const std::vector<std::v
     for (const std::vector<int>& body : bodies) {
         const std::vector<int> corners = corners_of(packing, body, source, known);
         for (const int member : body) {
-            const auto corner = std::find(corners.begin(), corners.end(), member);
+            const auto corner = std::ranges::find(corners, member);
             for (const int end : corner == corners.end() ? ends_of(packing, corners, member)
                                                          : std::vector<int>(corners.begin(), corner)) {
                 bars.push_back({std::min(member, end), std::max(member, end), height(packing, member, {end})});
             }
         }
     }
-    std::sort(bars.begin(), bars.end());
+    std::ranges::sort(bars);
     return bars;
 }
 
 double shared_by_members(const Packing& packing, std::span<const int> left_out) {
     double shared = 0;
     for (const std::vector<int>& body : Bodies(packing).members()) {
-        if (std::find(left_out.begin(), left_out.end(), body.front()) != left_out.end()) {
+        if (std::ranges::find(left_out, body.front()) != left_out.end()) {
             continue;
         }
         if (packing.dimension != plane) {
@@ -265,29 +262,28 @@ double shared_by_members(const Packing& packing, std::span<const int> left_out) 
 void require_single_grains(const Packing& packing, const std::string& source, const std::string& what) {
     require_no_arcs(packing, source, what);
     if (!packing.bars.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: a packing of clumps ({} bars); {} takes single grains only; inspect, certify, run "
-                                "and verify (of certificates) take clumps",
-                                source, packing.bars.size(), what));
+        refuse(source,
+               "a packing of clumps ({} bars); {} takes single grains only; inspect, certify, run and verify (of "
+               "certificates) take clumps",
+               packing.bars.size(), what);
     }
 }
 
 void validate_bars(const Packing& packing, const std::string& source) {
-    const auto bad = [&](const std::string& what) { throw Error(ErrorKind::bad_input, source + ": " + what); };
     for (std::size_t k = 0; k < packing.bars.size(); ++k) {
         const Bar& bar = packing.bars[k];
         if (bar.i < 0 || bar.i >= bar.j || bar.j >= packing.disk_count()) {
-            bad(fmt::format("bar {}-{}: expected two different {}s from 0 to {}, the smaller number first", bar.i,
-                            bar.j, grain_word(packing.dimension), packing.disk_count() - 1));
+            refuse(source, "bar {}-{}: expected two different {}s from 0 to {}, the smaller number first", bar.i, bar.j,
+                   grain_word(packing.dimension), packing.disk_count() - 1);
         }
         if (!(bar.length >= shortest_length && bar.length <= longest_length)) {
-            bad(fmt::format("the length of bar {}-{} is {}: expected a positive finite number from {} to {}", bar.i,
-                            bar.j, bar.length, shortest_length, longest_length));
+            refuse(source, "the length of bar {}-{} is {}: expected a positive finite number from {} to {}", bar.i,
+                   bar.j, bar.length, shortest_length, longest_length);
         }
         if (k > 0 &&
             (bar < packing.bars[k - 1] || (bar.i == packing.bars[k - 1].i && bar.j == packing.bars[k - 1].j))) {
-            bad(fmt::format("bar {}-{} comes after bar {}-{}: expected bars in increasing order, each once", bar.i,
-                            bar.j, packing.bars[k - 1].i, packing.bars[k - 1].j));
+            refuse(source, "bar {}-{} comes after bar {}-{}: expected bars in increasing order, each once", bar.i,
+                   bar.j, packing.bars[k - 1].i, packing.bars[k - 1].j);
         }
     }
     if (packing.bars.empty()) {
@@ -302,8 +298,8 @@ void validate_bars(const Packing& packing, const std::string& source) {
         const int count = static_cast<int>(body.size());
         const int expected = bars_of_rigid_body(count, packing.dimension);
         if (const int found = bars[static_cast<std::size_t>(body.front())]; found != expected) {
-            bad(fmt::format("the body of {} {} has {} members and {} bars: expected {}, as many as make it rigid",
-                            grain_word(packing.dimension), body.front(), count, found, expected));
+            refuse(source, "the body of {} {} has {} members and {} bars: expected {}, as many as make it rigid",
+                   grain_word(packing.dimension), body.front(), count, found, expected);
         }
     }
 }

@@ -1,7 +1,7 @@
 #include "core/dot.hpp"
+#include "core/refuse.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
 
 #include <fmt/format.h>
@@ -46,9 +46,9 @@ void Load::set_loaded_stress(double value) {
 
 void Load::follow(const StressRates& rate) {
     path.reset();
-    const auto changing = std::find_if(rate.begin(), rate.end(), [](double r) { return r != 0; });
+    const auto changing = std::ranges::find_if(rate, [](double r) { return r != 0; });
     assert(changing != rate.end());
-    if (*changing == 1 && std::count(rate.begin(), rate.end(), 0.0) + 1 == static_cast<long>(rate.size())) {
+    if (*changing == 1 && std::ranges::count(rate, 0.0) + 1 == static_cast<long>(rate.size())) {
         loaded_axis = static_cast<int>(changing - rate.begin());
         return;
     }
@@ -212,7 +212,7 @@ std::vector<double> Load::unit_force(const Packing& packing) const {
 
 std::vector<double> Load::fixed_force(const Packing& packing) const {
     std::vector<double> force(packing.q.size(), 0.0);
-    std::copy(disk_force.begin(), disk_force.end(), force.begin());
+    std::ranges::copy(disk_force, force.begin());
     for (const WallForce& wall : wall_forces(packing)) {
         const double fixed = path ? path->at[place_of(packing, wall)] : wall.rate == 0 ? wall.stress : 0;
         if (fixed != 0) {
@@ -313,12 +313,11 @@ void require_pressed_sides(const Packing& packing, const Load& load, bool stated
             const bool open =
                 packing.walls.lower[side] == WallKind::absent || packing.walls.upper[side] == WallKind::absent;
             if (side != pressed && open && !packing.cell.periodic[side] && (present || !stated)) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("{}: {}, and the stress along {} presses over the length along {}, where a "
-                                        "wall is absent: expected nominal stresses with reference_length in load, as "
-                                        "the place of an absent wall means nothing",
-                                        source, present ? "load.kind is \"true\"" : "load has no reference_length",
-                                        axis_names.at(pressed), axis_names.at(side)));
+                refuse(source,
+                       "{}, and the stress along {} presses over the length along {}, where a wall is absent: expected "
+                       "nominal stresses with reference_length in load, as the place of an absent wall means nothing",
+                       present ? "load.kind is \"true\"" : "load has no reference_length", axis_names.at(pressed),
+                       axis_names.at(side));
             }
         }
     }

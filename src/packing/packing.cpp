@@ -1,9 +1,9 @@
+#include "core/refuse.hpp"
 #include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
 #include "packing/cell_wrap.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <fmt/format.h>
@@ -25,6 +25,92 @@ int pinned_grain(const Packing& packing) {
     return pin;
 }
 
+void validate_cell(const Packing& packing, const std::string& source) {
+    const Cell& cell = packing.cell;
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        if (!cell.periodic[a]) {
+            if (cell.period_moves[a]) {
+                refuse(source, "the period along {} moves, and that axis has walls: expected a periodic axis",
+                       axis_names[a]);
+            }
+            continue;
+        }
+        if (packing.walls.lower[a] != WallKind::absent || packing.walls.upper[a] != WallKind::absent) {
+            refuse(source, "{} is periodic and has walls: expected walls \"absent\" along it", axis_names[a]);
+        }
+        const double length = packing.lattice(a, a);
+        if (!(length > 0 && length <= longest_length)) {
+            refuse(source,
+                   "the period along {} is {}: expected a positive length of at most {} (the cell is inverted or "
+                   "degenerate)",
+                   axis_names[a], length, longest_length);
+        }
+    }
+    for (std::size_t b = 1; b < packing.axes(); ++b) {
+        for (std::size_t a = 0; a < b; ++a) {
+            const double tilt = packing.lattice(a, b);
+            const bool both = cell.periodic[a] && cell.periodic[b];
+            if (!(std::abs(tilt) <= longest_length) || (!both && (tilt != 0 || cell.tilt_moves[cell.tilt(a, b)]))) {
+                refuse(source, "the tilt {} is {}: expected {}", tilt_names[cell.tilt(a, b)], tilt,
+                       both ? "a finite number" : "0, fixed, as one of its axes has walls");
+            }
+        }
+    }
+    Cell shaped = cell;
+    shaped.keep_shape();
+    if (cell.keeps_shape && (!cell.all() || shaped != cell)) {
+        refuse(source, "the cell keeps its shape: expected periodic axes alone, and nothing else that moves");
+    }
+    if (cell.pin < 0 || cell.pin >= packing.disk_count()) {
+        refuse(source, "{} {} is pinned: expected one from 0 to {}", grain_word(packing.dimension), cell.pin,
+               packing.disk_count() - 1);
+    }
+    if (std::ranges::find(packing.fixed, 1) != packing.fixed.end()) {
+        refuse(source, "fixed disks in a periodic cell are not supported: expected none (the pinned one says where the "
+                       "origin is)");
+    }
+}
+
+/// The length of the period A m.
+double period_length(const Packing& packing, const std::array<int, most_axes>& m) {
+    PerAxis<double> period{};
+    add_periods(period, packing, m);
+    return packing.dimension == plane ? std::hypot(period[0], period[1]) : std::hypot(period[0], period[1], period[2]);
+}
+
+/// Periods that a grain can meet itself through: the short ones among those of a few cells.
+void validate_own_images(const Packing& packing, const std::string& source) {
+    constexpr int few = 3;
+    const auto largest = std::ranges::max_element(packing.radius);
+    std::array<int, most_axes> most{};
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        most[a] = packing.cell.periodic[a] ? few : 0;
+    }
+    for (int z = 0; z <= most[2]; ++z) {
+        for (int y = z == 0 ? 0 : -most[1]; y <= most[1]; ++y) {
+            for (int x = y == 0 && z == 0 ? 1 : -most[0]; x <= most[0]; ++x) {
+                const double period = period_length(packing, {x, y, z});
+                const bool rests = packing.dimension == plane ? y == 0 : z == 0; // while the last period moves
+                if (packing.cell.keeps_shape && rests &&
+                    !(2 * *largest < period * (1 - 1e-9))) { // proofs/cells.md, C13
+                    refuse(source,
+                           "the cell keeps its shape and a {} of diameter {} touches its own image along {}, {} away: "
+                           "expected a larger period there",
+                           grain_word(packing.dimension), 2 * *largest, packing.dimension == plane ? "x" : "x and y",
+                           period);
+                }
+                if (2 * *largest > period * (1 + 1e-9)) { // beyond rounding: whatever the configuration
+                    refuse(source,
+                           "{} {} of diameter {} overlaps its own image ({}, {}{}), {} away: expected a diameter of at "
+                           "most the shortest period",
+                           grain_word(packing.dimension), largest - packing.radius.begin(), 2 * *largest, x, y,
+                           packing.dimension == plane ? "" : fmt::format(", {}", z), period);
+                }
+            }
+        }
+    }
+}
+
 } // namespace
 
 Walls Walls::box(int dimension) {
@@ -39,10 +125,10 @@ Walls Walls::none() {
 }
 
 double Packing::min_radius() const {
-    return *std::min_element(radius.begin(), radius.end());
+    return *std::ranges::min_element(radius);
 }
 double Packing::max_radius() const {
-    return *std::max_element(radius.begin(), radius.end());
+    return *std::ranges::max_element(radius);
 }
 
 double Packing::solid_fraction() const {
@@ -53,7 +139,7 @@ double Packing::solid_fraction_without(std::span<const int> left_out) const {
     double grains = 0;
     for (int i = 0; i < disk_count(); ++i) {
         const double r = radius[static_cast<std::size_t>(i)];
-        const bool counts = std::find(left_out.begin(), left_out.end(), i) == left_out.end();
+        const bool counts = std::ranges::find(left_out, i) == left_out.end();
         grains += !counts ? 0 : dimension == plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
     }
     grains -= bars.empty() ? 0 : shared_by_members(*this, left_out);
@@ -112,139 +198,45 @@ std::string DofMap::name(int dof) const {
                              : fmt::format("{} wall", upper_wall_names[axis]);
 }
 
-namespace {
-
-void validate_cell(const Packing& packing, const std::string& source) {
-    const auto bad = [&](const std::string& what) { throw Error(ErrorKind::bad_input, source + ": " + what); };
-    const Cell& cell = packing.cell;
-    for (std::size_t a = 0; a < packing.axes(); ++a) {
-        if (!cell.periodic[a]) {
-            if (cell.period_moves[a]) {
-                bad(fmt::format("the period along {} moves, and that axis has walls: expected a periodic axis",
-                                axis_names[a]));
-            }
-            continue;
-        }
-        if (packing.walls.lower[a] != WallKind::absent || packing.walls.upper[a] != WallKind::absent) {
-            bad(fmt::format("{} is periodic and has walls: expected walls \"absent\" along it", axis_names[a]));
-        }
-        const double length = packing.lattice(a, a);
-        if (!(length > 0 && length <= longest_length)) {
-            bad(fmt::format("the period along {} is {}: expected a positive length of at most {} (the cell is inverted "
-                            "or degenerate)",
-                            axis_names[a], length, longest_length));
-        }
-    }
-    for (std::size_t b = 1; b < packing.axes(); ++b) {
-        for (std::size_t a = 0; a < b; ++a) {
-            const double tilt = packing.lattice(a, b);
-            const bool both = cell.periodic[a] && cell.periodic[b];
-            if (!(std::abs(tilt) <= longest_length) || (!both && (tilt != 0 || cell.tilt_moves[cell.tilt(a, b)]))) {
-                bad(fmt::format("the tilt {} is {}: expected {}", tilt_names[cell.tilt(a, b)], tilt,
-                                both ? "a finite number" : "0, fixed, as one of its axes has walls"));
-            }
-        }
-    }
-    Cell shaped = cell;
-    shaped.keep_shape();
-    if (cell.keeps_shape && (!cell.all() || shaped != cell)) {
-        bad("the cell keeps its shape: expected periodic axes alone, and nothing else that moves");
-    }
-    if (cell.pin < 0 || cell.pin >= packing.disk_count()) {
-        bad(fmt::format("{} {} is pinned: expected one from 0 to {}", grain_word(packing.dimension), cell.pin,
-                        packing.disk_count() - 1));
-    }
-    if (std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
-        bad("fixed disks in a periodic cell are not supported: expected none (the pinned one says where the origin "
-            "is)");
-    }
-}
-
-/// The length of the period A m.
-double period_length(const Packing& packing, const std::array<int, most_axes>& m) {
-    PerAxis<double> period{};
-    add_periods(period, packing, m);
-    return packing.dimension == plane ? std::hypot(period[0], period[1]) : std::hypot(period[0], period[1], period[2]);
-}
-
-/// Periods that a grain can meet itself through: the short ones among those of a few cells.
-void validate_own_images(const Packing& packing, const std::string& source) {
-    constexpr int few = 3;
-    const auto largest = std::max_element(packing.radius.begin(), packing.radius.end());
-    std::array<int, most_axes> most{};
-    for (std::size_t a = 0; a < packing.axes(); ++a) {
-        most[a] = packing.cell.periodic[a] ? few : 0;
-    }
-    for (int z = 0; z <= most[2]; ++z) {
-        for (int y = z == 0 ? 0 : -most[1]; y <= most[1]; ++y) {
-            for (int x = y == 0 && z == 0 ? 1 : -most[0]; x <= most[0]; ++x) {
-                const double period = period_length(packing, {x, y, z});
-                const bool rests = packing.dimension == plane ? y == 0 : z == 0; // while the last period moves
-                if (packing.cell.keeps_shape && rests &&
-                    !(2 * *largest < period * (1 - 1e-9))) { // proofs/cells.md, C13
-                    throw Error(
-                        ErrorKind::bad_input,
-                        fmt::format("{}: the cell keeps its shape and a {} of diameter {} touches its own image "
-                                    "along {}, {} away: expected a larger period there",
-                                    source, grain_word(packing.dimension), 2 * *largest,
-                                    packing.dimension == plane ? "x" : "x and y", period));
-                }
-                if (2 * *largest > period * (1 + 1e-9)) { // beyond rounding: whatever the configuration
-                    throw Error(ErrorKind::bad_input,
-                                fmt::format("{}: {} {} of diameter {} overlaps its own image ({}, {}{}), {} away: "
-                                            "expected a diameter of at most the shortest period",
-                                            source, grain_word(packing.dimension), largest - packing.radius.begin(),
-                                            2 * *largest, x, y,
-                                            packing.dimension == plane ? "" : fmt::format(", {}", z), period));
-                }
-            }
-        }
-    }
-}
-
-} // namespace
-
 void require_box(const Packing& packing, const std::string& source, const std::string& what) {
     if (packing.cell.any()) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: a periodic cell; {} takes boxes only so far", source, what));
+        refuse(source, "a periodic cell; {} takes boxes only so far", what);
     }
 }
 
 void require_plane(const Packing& packing, const std::string& source, const std::string& what) {
     if (packing.dimension != plane) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: a packing of spheres (dimension {}); {} takes disks only",
-                                                      source, packing.dimension, what));
+        refuse(source, "a packing of spheres (dimension {}); {} takes disks only", packing.dimension, what);
     }
 }
 
 void validate(const Packing& packing, const std::string& source) {
-    const auto bad = [&](const std::string& what) { throw Error(ErrorKind::bad_input, source + ": " + what); };
     if (packing.dimension < plane || packing.axes() > most_axes || packing.cell.dimension != packing.dimension) {
-        bad(fmt::format("dimension {}, of the cell {}: expected 2 (disks) or 3 (spheres), the same of both",
-                        packing.dimension, packing.cell.dimension));
+        refuse(source, "dimension {}, of the cell {}: expected 2 (disks) or 3 (spheres), the same of both",
+               packing.dimension, packing.cell.dimension);
     }
     const char* const grain = grain_word(packing.dimension);
     if (packing.radius.empty()) {
-        bad(fmt::format("no {0}s: a packing needs at least one {0}", grain));
+        refuse(source, "no {0}s: a packing needs at least one {0}", grain);
     }
     if (packing.q.size() != packing.coordinate_count()) {
-        bad(fmt::format("{} coordinates for {} {}s: expected {}", packing.q.size(), packing.radius.size(), grain,
-                        packing.coordinate_count()));
+        refuse(source, "{} coordinates for {} {}s: expected {}", packing.q.size(), packing.radius.size(), grain,
+               packing.coordinate_count());
     }
     if (!packing.fixed.empty() && packing.fixed.size() != packing.radius.size()) {
-        bad(fmt::format("{} flags 'fixed' for {} {}s", packing.fixed.size(), packing.radius.size(), grain));
+        refuse(source, "{} flags 'fixed' for {} {}s", packing.fixed.size(), packing.radius.size(), grain);
     }
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
         const double r = packing.radius[i];
         if (!(r >= shortest_length && r <= longest_length)) {
-            bad(fmt::format("radius of {} {} is {}: expected a positive finite number from {} to {}", grain, i, r,
-                            shortest_length, longest_length));
+            refuse(source, "radius of {} {} is {}: expected a positive finite number from {} to {}", grain, i, r,
+                   shortest_length, longest_length);
         }
         for (std::size_t a = 0; a < packing.axes(); ++a) {
             const double x = packing.q[packing.axes() * i + a];
             if (!(std::abs(x) <= longest_length)) {
-                bad(fmt::format("{} of {} {} is {}: expected a finite number of size at most {}", axis_names[a], grain,
-                                i, x, longest_length));
+                refuse(source, "{} of {} {} is {}: expected a finite number of size at most {}", axis_names[a], grain,
+                       i, x, longest_length);
             }
         }
     }
@@ -261,8 +253,8 @@ void validate(const Packing& packing, const std::string& source) {
         }
         const double length = packing.length(static_cast<int>(a));
         if (!(std::abs(length) <= longest_length) || (packing.walls.lower[a] != WallKind::absent && !(length > 0))) {
-            bad(fmt::format("position of the {} wall is {}: expected a positive finite number of at most {}",
-                            upper_wall_names[a], length, longest_length));
+            refuse(source, "position of the {} wall is {}: expected a positive finite number of at most {}",
+                   upper_wall_names[a], length, longest_length);
         }
         if (packing.walls.lower[a] == WallKind::absent) {
             continue;
@@ -270,8 +262,8 @@ void validate(const Packing& packing, const std::string& source) {
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
             // 2R > L beyond one rounding of L: the disk cannot fit, whatever the configuration; an arc of it may.
             if (!arcs.angles(static_cast<int>(i)) && 2 * packing.radius[i] > length * (1 + 1e-9)) {
-                bad(fmt::format("{} {} of diameter {} is larger than the box: its length along {} is {}", grain, i,
-                                2 * packing.radius[i], axis_names[a], length));
+                refuse(source, "{} {} of diameter {} is larger than the box: its length along {} is {}", grain, i,
+                       2 * packing.radius[i], axis_names[a], length);
             }
         }
     }
@@ -297,7 +289,7 @@ double grid_step(const Packing& packing) {
 
 bool is_on_grid(const Packing& packing) {
     const double step = grid_step(packing);
-    return std::all_of(packing.q.begin(), packing.q.end(), [step](double x) {
+    return std::ranges::all_of(packing.q, [step](double x) {
         const double steps = x / step; // exact but for underflow, as the step is a power of two; fmod is slow
         return x == 0 || (std::abs(steps) >= 1 && steps == std::nearbyint(steps));
     });
@@ -319,7 +311,7 @@ double snap_to_grid(Packing& packing) {
         x = snapped;
     };
     if (packing.cell.any()) {
-        std::for_each(packing.q.begin(), packing.q.end(), snap);
+        std::ranges::for_each(packing.q, snap);
         return moved;
     }
     const std::size_t disks = packing.radius.size();

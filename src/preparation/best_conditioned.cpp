@@ -37,7 +37,7 @@ std::optional<std::vector<Contact>> best_conditioned(const Packing& packing) {
     for (Eigen::Index k = 0; k < n; ++k) {
         kept.push_back(pairs[static_cast<std::size_t>(factors.colsPermutation().indices()(k))]);
     }
-    std::sort(kept.begin(), kept.end());
+    std::ranges::sort(kept);
     return kept;
 }
 

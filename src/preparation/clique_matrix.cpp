@@ -69,7 +69,7 @@ CliqueMatrix::CliqueMatrix(std::size_t columns, const std::vector<int>& start, c
     for (std::size_t k = 0; k < columns; ++k) {
         pattern.emplace_back(static_cast<int>(k), static_cast<int>(k));
     }
-    std::sort(pattern.begin(), pattern.end());
+    std::ranges::sort(pattern);
     pattern.erase(std::unique(pattern.begin(), pattern.end()), pattern.end());
     first_.assign(columns + 1, 0);
     for (const auto& [of, row] : pattern) {
@@ -78,7 +78,7 @@ CliqueMatrix::CliqueMatrix(std::size_t columns, const std::vector<int>& start, c
     }
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     for (const std::pair<int, int>& entry : entries) {
-        const auto at = std::lower_bound(pattern.begin(), pattern.end(), entry);
+        const auto at = std::ranges::lower_bound(pattern, entry);
         place_.push_back(static_cast<std::size_t>(at - pattern.begin()));
     }
     value_.resize(row_.size());

@@ -51,7 +51,7 @@ bool ContactProgramme::complete(Packing& packing, double eps, std::vector<Contac
         Rows closed(packing);
         Rows open(packing);
         for (const Contact& contact : row_contact_) {
-            const bool listed = std::binary_search(contacts.begin(), contacts.end(), contact);
+            const bool listed = std::ranges::binary_search(contacts, contact);
             (listed ? closed : open).add(packing, contact);
         }
         auto velocity = mechanism(wanted, closed.starts(), closed.column, closed.value);
@@ -83,7 +83,7 @@ bool ContactProgramme::complete(Packing& packing, double eps, std::vector<Contac
             const std::size_t at = none.dofs.coordinate_of(k);
             packing.q[at] += (rise > 0 ? -time : time) * (*velocity)[k];
         }
-        contacts.insert(std::upper_bound(contacts.begin(), contacts.end(), open.contact[first]), open.contact[first]);
+        contacts.insert(std::ranges::upper_bound(contacts, open.contact[first]), open.contact[first]);
     }
     return contacts.size() == wanted;
 }

@@ -77,8 +77,20 @@ void count_changes(const ActiveSet& before, const ActiveSet& now, std::size_t co
         held += now.row[l];
         step.changes += was != (now.row[l] != 0) ? 1 : 0;
     }
-    const bool bounded = std::any_of(now.column.begin(), now.column.end(), [](auto c) { return c != 0; });
+    const bool bounded = std::ranges::any_of(now.column, [](auto c) { return c != 0; });
     step.bounds = static_cast<int>(std::abs(held - static_cast<long>(coordinates))) + (bounded ? 1 : 0);
+}
+
+/// Moves the degrees of freedom; returns the largest displacement of a disk's coordinate.
+double displace(Packing& packing, const DofMap& dofs, const std::vector<double>& x, std::size_t disks) {
+    double largest = 0;
+    for (int c = 0; c < dofs.dof_count(); ++c) {
+        const auto k = static_cast<std::size_t>(dofs.coordinate_of(c));
+        const double step = x[static_cast<std::size_t>(c)];
+        packing.q[k] += step;
+        largest = k < disks ? std::max(largest, std::abs(step)) : largest;
+    }
+    return largest;
 }
 
 } // namespace
@@ -113,22 +125,6 @@ InteriorPoint ContactProgramme::first_point(const Packing& packing, const Rows& 
     }
     return point;
 }
-
-namespace {
-
-/// Moves the degrees of freedom; returns the largest displacement of a disk's coordinate.
-double displace(Packing& packing, const DofMap& dofs, const std::vector<double>& x, std::size_t disks) {
-    double largest = 0;
-    for (int c = 0; c < dofs.dof_count(); ++c) {
-        const auto k = static_cast<std::size_t>(dofs.coordinate_of(c));
-        const double step = x[static_cast<std::size_t>(c)];
-        packing.q[k] += step;
-        largest = k < disks ? std::max(largest, std::abs(step)) : largest;
-    }
-    return largest;
-}
-
-} // namespace
 
 ProgrammeStep ContactProgramme::descend(Packing& packing, double eps,
                                         const std::function<void(const ProgrammeStep&)>& watch) {
@@ -166,7 +162,7 @@ ProgrammeStep ContactProgramme::descend(Packing& packing, double eps,
         for (double& bound : programme.bound) {
             bound *= 1 - renewal;
         }
-        std::transform(rows.gap.begin(), rows.gap.end(), programme.lower.begin(), [](double h) { return -h; });
+        std::ranges::transform(rows.gap, programme.lower.begin(), [](double h) { return -h; });
         if (renew) {
             anchor = packing.q;
             descent.emplace(programme);

@@ -3,6 +3,7 @@
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
+#include "core/refuse.hpp"
 #include "preparation/polish.hpp"
 #include "preparation/programme.hpp"
 #include "preparation/random.hpp"
@@ -11,7 +12,6 @@
 #include "verified/to_vertex.hpp"
 
 #include <isostat/core/machine.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>
@@ -69,27 +69,26 @@ void require_sensible(const Packing& start, const PreparationOptions& options) {
     validate(checked, "start of the linear programmes");
     const auto is_fixed = [](unsigned char flag) { return flag != 0; };
     const Cell& cell = start.cell;
-    bool gives_way = std::none_of(start.fixed.begin(), start.fixed.end(), is_fixed);
+    bool gives_way = std::ranges::none_of(start.fixed, is_fixed);
     for (std::size_t a = 0; a < start.axes(); ++a) {
         const bool box = start.walls.lower[a] == WallKind::fixed && start.walls.upper[a] == WallKind::movable;
         gives_way = gives_way && (cell.periodic[a] ? cell.period_moves[a] || cell.keeps_shape : box);
     }
     if (!gives_way) {
-        throw Error(ErrorKind::bad_input, "start of the linear programmes: expected along each axis a fixed and a "
-                                          "movable wall, or a period that moves, and no fixed disk");
+        refuse("start of the linear programmes",
+               "expected along each axis a fixed and a movable wall, or a period that moves, and no fixed disk");
     }
     if (cell.any() &&
         (start.disk_count() > options.large_above || (cell.shears() && options.load != LoadKind::nominal))) {
-        throw Error(ErrorKind::bad_input, fmt::format("start of the linear programmes: expected at most {} disks in a "
-                                                      "periodic cell, and nominal stresses where its tilt moves",
-                                                      options.large_above));
+        refuse("start of the linear programmes",
+               "expected at most {} disks in a periodic cell, and nominal stresses where its tilt moves",
+               options.large_above);
     }
     for (const auto& [name, value] : {std::pair{"stress", options.stress},
                                       {"ratio of the stresses", options.ratio},
                                       {"weight of the infinitesimal loads", options.infinitesimal_weight}}) {
         if (!(value > 0) || !std::isfinite(value)) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("preparation: {} is {}: expected a positive finite number", name, value));
+            refuse("preparation", "{} is {}: expected a positive finite number", name, value);
         }
     }
 }
@@ -235,7 +234,7 @@ class VertexSearch {
         for (const int coordinate : step.at_bounds) {
             state.contacts.emplace_back(ContactKind::held, coordinate, 0);
         }
-        std::sort(state.contacts.begin(), state.contacts.end());
+        std::ranges::sort(state.contacts);
         const auto failure = to_vertex(state.packing, state.contacts, newton_.iterations);
         snap_to_grid(state.packing);
         state.load = load_;

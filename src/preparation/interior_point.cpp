@@ -49,8 +49,8 @@ class Iteration {
 
     /// Starts at x = 0 with given slacks and multipliers of the rows, and those of the bounds at the mean product.
     void start_from(const InteriorPoint& point) {
-        std::copy(point.slack.begin(), point.slack.end(), s_.begin());
-        std::copy(point.force.begin(), point.force.end(), z_.begin());
+        std::ranges::copy(point.slack, s_.begin());
+        std::ranges::copy(point.force, z_.begin());
         const double centre = mean_row_product();
         for (std::size_t k = 0; k < columns_; ++k) {
             z_[rows_ + k] = z_[rows_ + columns_ + k] = centre / p_.bound[k];

@@ -65,14 +65,14 @@ class Basis {
 
     /// The other pair with the most negative gap.
     [[nodiscard]] std::optional<std::size_t> overlapping() const {
-        const auto least = std::min_element(gaps_.begin(), gaps_.end());
+        const auto least = std::ranges::min_element(gaps_);
         return least != gaps_.end() && *least < 0 ? std::optional(static_cast<std::size_t>(least - gaps_.begin()))
                                                   : std::nullopt;
     }
 
     /// The contact with the most negative force.
     [[nodiscard]] std::optional<std::size_t> pulling() const {
-        const auto least = std::min_element(forces_.begin(), forces_.end());
+        const auto least = std::ranges::min_element(forces_);
         return least != forces_.end() && *least < Force(0, 0)
                    ? std::optional(static_cast<std::size_t>(least - forces_.begin()))
                    : std::nullopt;
@@ -165,7 +165,7 @@ Result<Polished> pivot(Packing packing, std::vector<Contact> contacts, const Loa
         if (limits.stop != nullptr && limits.stop->load(std::memory_order_relaxed)) {
             return failed(FailureKind::interrupted, "stopped after {} pivots", pivot);
         }
-        std::sort(contacts.begin(), contacts.end());
+        std::ranges::sort(contacts);
         if (signs == Signs::as_computed && !seen.insert(contacts).second) {
             return failed(FailureKind::not_converged, "after {} pivots the contacts are those of before", pivot);
         }

@@ -119,7 +119,7 @@ Result<std::unique_ptr<Centre>> centre_at_vertex(Packing& packing, const std::ve
 }
 
 Result<Polished> polish(Packing packing, std::vector<Contact> contacts, Load load, long& iterations) {
-    std::sort(contacts.begin(), contacts.end());
+    std::ranges::sort(contacts);
     const auto made = centre_at_vertex(packing, contacts, iterations);
     if (!made.ok()) {
         return made.failure();

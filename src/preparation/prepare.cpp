@@ -1,4 +1,5 @@
 #include "contact/words.hpp"
+#include "core/refuse.hpp"
 #include "preparation/random.hpp"
 #include "preparation/scale.hpp"
 #include "preparation/soft.hpp"
@@ -6,7 +7,6 @@
 #include "preparation/stage.hpp"
 
 #include <isostat/core/machine.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>
@@ -53,13 +53,9 @@ constexpr double narrowest_cell_in_space = 5;
 /// Overlap left by the random start, in diameters.
 constexpr double start_overlap = 1e-2;
 
-[[noreturn]] void bad(const std::string& what) {
-    throw Error(ErrorKind::bad_input, "preparation: " + what);
-}
-
 void require_positive(const char* field, double value) {
     if (!(value > 0) || !std::isfinite(value)) {
-        bad(fmt::format("{} is {}: expected a positive finite number", field, value));
+        refuse("preparation", "{} is {}: expected a positive finite number", field, value);
     }
 }
 
@@ -114,36 +110,36 @@ void check(const PreparationOptions& options) {
     require_positive("aspect", options.aspect);
     require_positive("loose fraction", options.start_fraction());
     if (options.dimension < plane || options.dimension > static_cast<int>(most_axes)) {
-        bad(fmt::format("dimension is {}: expected 2 or 3", options.dimension));
+        refuse("preparation", "dimension is {}: expected 2 or 3", options.dimension);
     }
     require_positive("softness", options.softness);
     require_positive("relaxation", options.relaxation);
     require_positive("weight of the infinitesimal loads", options.infinitesimal_weight);
     if (options.start_fraction() > 0.8 || options.softness > first_pressure) {
-        bad(fmt::format("loose fraction {} and softness {}: expected at most 0.8 and {}", options.start_fraction(),
-                        options.softness, first_pressure));
+        refuse("preparation", "loose fraction {} and softness {}: expected at most 0.8 and {}",
+               options.start_fraction(), options.softness, first_pressure);
     }
     for (std::size_t i = 0; i < options.radii.size(); ++i) {
         require_positive(fmt::format("radius of disk {}", i).c_str(), options.radii[i]);
     }
     if (options.ratio != 1) {
-        bad(fmt::format("ratio of the stresses is {}: expected 1, the packing is compressed isotropically",
-                        options.ratio));
+        refuse("preparation", "ratio of the stresses is {}: expected 1, the packing is compressed isotropically",
+               options.ratio);
     }
     const std::size_t disks =
         options.radii.empty() ? static_cast<std::size_t>(std::max(options.disks, 0)) : options.radii.size();
     const bool periodic = options.cell != PreparedCell::none;
     if (periodic && disks > static_cast<std::size_t>(options.large_above)) {
-        bad(fmt::format("{} disks in a periodic cell: expected at most {}", disks, options.large_above));
+        refuse("preparation", "{} disks in a periodic cell: expected at most {}", disks, options.large_above);
     }
     if (options.cell == PreparedCell::tilted && options.load != LoadKind::nominal) {
-        bad("true stresses where the tilt moves have no potential: expected nominal ones");
+        refuse("preparation", "true stresses where the tilt moves have no potential: expected nominal ones");
     }
     if (options.loaded_axis.value_or(0) >= options.dimension && options.cell != PreparedCell::tilted) {
-        bad("the shear stress is to be changed and no tilt moves: expected a tilted cell");
+        refuse("preparation", "the shear stress is to be changed and no tilt moves: expected a tilted cell");
     }
     if (!(options.jitter >= 0 && options.jitter < 1)) {
-        bad(fmt::format("jitter is {}: expected a number from 0 to below 1", options.jitter));
+        refuse("preparation", "jitter is {}: expected a number from 0 to below 1", options.jitter);
     }
 }
 
@@ -194,7 +190,7 @@ class SoftStages {
             return true;
         }
         SoftNewton steps(packing_, options_.stop);
-        return std::all_of(newton_divisors.begin(), newton_divisors.end(), [&](double divisor) {
+        return std::ranges::all_of(newton_divisors, [&](double divisor) {
             const double pressure = options_.softness / divisor;
             return record(fmt::format("newton steps at {:.0e}", pressure), [&](const auto& progress) {
                 return steps.relax(pressure, newton_tolerance, most_newton_steps, progress);

@@ -61,7 +61,7 @@ void ContactProgramme::collect(const Packing& packing, Rows& rows) const {
     const double wall_reach = (std::sqrt(squares) * wall_trust(packing) + 1) * trust_ * (1 + 1e-9);
     std::vector<Contact> near = with_bars(near_contacts(packing, reach, wall_reach), packing);
     if (!packing.bars.empty()) {
-        std::sort(near.begin(), near.end());
+        std::ranges::sort(near);
     }
     for (const Contact& contact : near) {
         // In space most images within that reach cannot approach so far. In the plane they stay in the list because the
@@ -174,7 +174,7 @@ void ContactProgramme::load(ClpSimplex& simplex, const Rows& rows, const BoxedPr
                             static_cast<CoinBigIndex>(rows.value.size()));
     matrix.setDimensions(static_cast<int>(rows.contact.size()), static_cast<int>(programme.bound.size()));
     std::vector<double> lower(programme.bound.size());
-    std::transform(programme.bound.begin(), programme.bound.end(), lower.begin(), [](double bound) { return -bound; });
+    std::ranges::transform(programme.bound, lower.begin(), [](double bound) { return -bound; });
     simplex.setLogLevel(0);
     simplex.loadProblem(matrix, lower.data(), programme.bound.data(), programme.cost.data(), programme.lower.data(),
                         nullptr);
@@ -201,8 +201,8 @@ bool ContactProgramme::start_from_overlaps(ClpSimplex& simplex, const Packing& p
     }
     const std::vector<int> degree = contacts_per_disk(packing.disk_count(), closed);
     const auto nonbasic = static_cast<int>(closed.size());
-    const auto hanging = static_cast<int>(
-        std::count_if(degree.begin(), degree.end(), [&packing](int d) { return d < packing.dimension; }));
+    const auto hanging =
+        static_cast<int>(std::ranges::count_if(degree, [&packing](int d) { return d < packing.dimension; }));
     if (nonbasic + packing.dimension * hanging < mostly_closed * columns) {
         return false;
     }

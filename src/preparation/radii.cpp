@@ -1,6 +1,6 @@
+#include "core/refuse.hpp"
 #include "preparation/random.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <boost/multiprecision/mpfr.hpp>
@@ -115,7 +115,7 @@ std::vector<double> draw_radii(const DiameterLaw& law, int count, std::uint64_t 
         fault = fmt::format("number of disks is {}: expected at least 1", count);
     }
     if (!fault.empty()) {
-        throw Error(ErrorKind::bad_input, "preparation: " + fault);
+        refuse("preparation", fault);
     }
     const bool cut = law.kind == RadiiLaw::lognormal || law.kind == RadiiLaw::normal;
     Uniform uniform(preparation::derived_seed(seed, preparation::Stream::radii));

@@ -2,11 +2,10 @@
 
 #include "core/dot.hpp"
 #include "core/parallel.hpp"
+#include "core/refuse.hpp"
 #include "core/work.hpp"
 #include "preparation/pair_forces.hpp"
 #include "preparation/scale.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -102,7 +101,7 @@ void SoftDynamics::renumber(bool in_patches) {
                 square[i][axes_ - 1 - a] = std::floor(packing_.q[axes_ * i + a] / width);
             }
         }
-        std::stable_sort(order_.begin(), order_.end(), [&](int i, int j) {
+        std::ranges::stable_sort(order_, [&](int i, int j) {
             return square[static_cast<std::size_t>(i)] < square[static_cast<std::size_t>(j)];
         });
         for (std::size_t k = 0; k < n_; ++k) {
@@ -136,9 +135,8 @@ void SoftDynamics::place_images() {
     const double* const length = q_.data() + axes_ * n_;
     // A pair may touch through several images; the centres of a sphere and its own image are a diameter apart.
     if (!(*std::min_element(length, length + axes_) >= (axes_ == 2 ? 2 : 1) * margin)) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("preparation: a periodic cell became narrower than {}: expected more",
-                                axes_ == 2 ? "four disks" : "its largest spheres"));
+        refuse("preparation", "a periodic cell became narrower than {}: expected more",
+               axes_ == 2 ? "four disks" : "its largest spheres");
     }
     int neighbours = 1; // 3 of each axis, with the cell itself
     for (std::size_t a = 0; a < axes_; ++a) {
@@ -208,7 +206,7 @@ void SoftDynamics::publish_lengths() {
 }
 
 SoftMeasures SoftDynamics::finish(SoftMeasures result, long steps, bool converged) {
-    std::fill(velocity_.begin(), velocity_.end(), 0.0);
+    std::ranges::fill(velocity_, 0.0);
     result.steps = steps;
     result.converged = converged;
     publish_lengths();
@@ -299,8 +297,7 @@ PerAxis<double> SoftDynamics::spread(std::size_t first, std::size_t last, std::s
     std::fill(from_above + Axes * first, from_above + Axes * last, 0.0);
     using V = Vector<Axes>;
     store(from_below + Axes * (n_ + piece), V{});
-    auto wall = std::lower_bound(wall_disks_.begin(), wall_disks_.end(), first,
-                                 [](const WallDisk& w, std::size_t i) { return w.disk < i; });
+    auto wall = std::ranges::lower_bound(wall_disks_, first, {}, &WallDisk::disk);
     V virial{};
     auto k = static_cast<std::size_t>(pairs_.start[first]);
     const auto pairs_until = [&](std::size_t end) {
@@ -461,8 +458,7 @@ void SoftDynamics::advance(double dt, bool walls) {
     follow_images();
     // Two disks that are not listed approach by at most twice the largest peculiar displacement plus the homogeneous
     // shortening; the same holds for a disk and a wall.
-    allowance_ -=
-        2 * dt * std::sqrt(*std::max_element(fastest.begin(), fastest.end())) + shrink * (2 * max_radius_ + skin_);
+    allowance_ -= 2 * dt * std::sqrt(*std::ranges::max_element(fastest)) + shrink * (2 * max_radius_ + skin_);
     ++age_;
     if (allowance_ < 0) {
         if (age_ < renewed_often) {
@@ -575,7 +571,7 @@ SoftMeasures SoftDynamics::relax(double pressure, double tolerance, long max_ste
     double dt = 0.1; // in units of sqrt(mass / stiffness)
     long step = 0;
     const std::size_t disks = axes_ * n_;
-    std::fill(velocity_.begin(), velocity_.end(), 0.0);
+    std::ranges::fill(velocity_, 0.0);
     Patch whole{0, disks + axes_, alpha_start, 0};
     for (Patch& patch : patches_) {
         patch.alpha = alpha_start;

@@ -130,7 +130,7 @@ bool SoftNewton::direction(const std::vector<double>& slope, std::vector<double>
         return false;
     }
     step.resize(slope.size());
-    std::transform(slope.begin(), slope.end(), step.begin(), [](double s) { return -s; });
+    std::ranges::transform(slope, step.begin(), [](double s) { return -s; });
     matrix_->solve(step);
     return true;
 }

@@ -2,9 +2,8 @@
 #include "ensemble/ensemble.hpp"
 
 #include "convert.hpp"
-#include "ensemble/members.hpp"
+#include "core/refuse.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/scene/scene.hpp>
 
@@ -20,7 +19,7 @@ std::unique_ptr<EnsembleDirectory> ensemble_folder(const std::string& text, cons
                     "samples is " + std::to_string(samples) + ": expected 1 to " + std::to_string(most_samples));
     }
     if (parse_scene(text, scene.string(), scene.parent_path()).programme.empty()) {
-        throw Error(ErrorKind::bad_input, scene.string() + ": has no [[programme]]: expected at least one segment");
+        refuse(scene.string(), "has no [[programme]]: expected at least one segment");
     }
     EnsembleHeader header;
     header.program = "isostat " ISOSTAT_VERSION;
@@ -59,7 +58,7 @@ void bind_ensemble(py::module_& module) {
     module.def(
         "_members", [](const std::filesystem::path& folder) -> As<"list[tuple[int, os.PathLike[str]]]"> {
             if (!is_ensemble(folder)) {
-                throw Error(ErrorKind::bad_input, folder.string() + ": holds no ensemble: expected ensemble.json");
+                refuse(folder.string(), "holds no ensemble: expected ensemble.json");
             }
             py::list rows;
             for (const Member& member : members_of(folder)) {

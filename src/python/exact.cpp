@@ -10,7 +10,6 @@
 
 #include <pybind11/operators.h>
 
-#include <cmath>
 #include <map>
 
 namespace isostat::python {

@@ -1,7 +1,7 @@
 // Binds packings to begin with: prepared ones, and those of other programs.
 #include "convert.hpp"
+#include "core/refuse.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/foreign/foreign.hpp>
@@ -132,9 +132,9 @@ void bind_plateau(py::module_& module) {
         "plateau",
         [](const Packing& packing, double first, double last, int rows) {
             if (!(finite(first, "first") <= finite(last, "last")) || rows < 0) {
-                throw Error(ErrorKind::bad_input, fmt::format("plateau from {} to {}, {} rows: expected first <= last, "
-                                                              "and no negative number of rows",
-                                                              first, last, rows));
+                refuse(ErrorKind::bad_input,
+                       "plateau from {} to {}, {} rows: expected first <= last, and no negative number of rows", first,
+                       last, rows);
             }
             return crafted::plateau(packing, first, last, rows);
         },

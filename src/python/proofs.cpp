@@ -1,11 +1,11 @@
 // Binds inspect, certify, verify: proofs for one state, and for a run.
 #include "certificate/jammed_box.hpp"
 #include "convert.hpp"
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <map>
@@ -287,9 +287,8 @@ Jamming jamming_of(const State& state) {
         out.counts["box"] = out.backbone["box"] = box->counting;
         out.grains = box->grains;
     } else {
-        throw Error(ErrorKind::bad_input,
-                    "jamming: expected a cell that is periodic along every axis, or a box with all "
-                    "its walls, no grain fixed and no force on a grain");
+        refuse("jamming", "expected a cell that is periodic along every axis, or a box with all its walls, no grain "
+                          "fixed and no force on a grain");
     }
     return out;
 }

@@ -1,10 +1,10 @@
 // Runs a scene from Python, with functions that are called for each arc and each equilibrium.
 #include "checker/run_records.hpp"
 #include "convert.hpp"
+#include "core/refuse.hpp"
 #include "io/equilibria.hpp"
 #include "report/run_walk.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/preparation/preparation.hpp>
@@ -88,7 +88,7 @@ class Run {
         std::filesystem::path output, const std::optional<PyState>& start)
         : scene_(parse_scene(text, name, folder)), output_(std::move(output)) {
         if (scene_.programme.empty()) {
-            throw Error(ErrorKind::bad_input, name + ": has no [[programme]]: expected at least one segment to run");
+            refuse(name, "has no [[programme]]: expected at least one segment to run");
         }
         if (start) {
             start_ = start_of_scene(start->state, scene_, name);
@@ -235,9 +235,8 @@ PyState walked_to(const std::filesystem::path& folder, int number) {
             return !found;
         });
     if (!found) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: equilibrium {} is not stored, and its records were not followed to it{}",
-                                folder.string(), number, lost.empty() ? "" : ": left out is " + lost.front()));
+        refuse(folder.string(), "equilibrium {} is not stored, and its records were not followed to it{}", number,
+               lost.empty() ? "" : ": left out is " + lost.front());
     }
     return {std::move(*found), {}};
 }

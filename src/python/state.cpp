@@ -3,12 +3,12 @@
 #include "checker/run_records.hpp"
 #include "contact/names.hpp"
 #include "convert.hpp"
+#include "core/refuse.hpp"
 #include "io/equilibria.hpp"
 #include "packing/words.hpp"
 #include "rigidity/isostatic.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <fmt/format.h>
@@ -35,8 +35,7 @@ template <class T> std::vector<T> per_axis(const PerAxis<T>& values, int dimensi
 As<"dict[str, tuple[str, str]]"> walls_dict(const Walls& walls, int dimension) {
     const auto words = [dimension](const PerAxis<WallKind>& kinds) {
         PerAxis<std::string> names;
-        std::transform(kinds.begin(), kinds.end(), names.begin(),
-                       [](WallKind kind) { return word_of(kind, wall_kind_words); });
+        std::ranges::transform(kinds, names.begin(), [](WallKind kind) { return word_of(kind, wall_kind_words); });
         return py::tuple(py::cast(per_axis(names, dimension)));
     };
     py::dict dict;
@@ -177,10 +176,9 @@ py::tuple packing_parts(const Packing& p) {
     require_single_grains(p, "Packing", "a copy");
     const Cell& c = p.cell;
     PerAxis<std::array<int, 2>> walls{};
-    std::transform(p.walls.lower.begin(), p.walls.lower.end(), p.walls.upper.begin(), walls.begin(),
-                   [](WallKind lower, WallKind upper) {
-                       return std::array{static_cast<int>(lower), static_cast<int>(upper)};
-                   });
+    std::ranges::transform(p.walls.lower, p.walls.upper, walls.begin(), [](WallKind lower, WallKind upper) {
+        return std::array{static_cast<int>(lower), static_cast<int>(upper)};
+    });
     return py::make_tuple(p.dimension, p.radius, p.q, p.fixed, walls, c.periodic, c.period_moves, c.tilt_moves, c.pin,
                           c.keeps_shape);
 }
@@ -215,11 +213,10 @@ Packing packing_of(const py::array_t<double, py::array::c_style | py::array::for
                    const std::optional<std::vector<std::string>>& upper, const std::vector<bool>& fixed) {
     const py::ssize_t d = centres.ndim() == 2 ? centres.shape(1) : 0;
     if ((d != 2 && d != 3) || static_cast<std::size_t>(centres.shape(0)) != radii.size()) {
-        throw Error(ErrorKind::bad_input,
-                    "positions: expected an array of shape (n, 2), of spheres (n, 3), for n radii");
+        refuse("positions", "expected an array of shape (n, 2), of spheres (n, 3), for n radii");
     }
     if (!fixed.empty() && fixed.size() != radii.size()) {
-        throw Error(ErrorKind::bad_input, "fixed: expected one flag per disk");
+        refuse("fixed", "expected one flag per disk");
     }
     Packing packing;
     packing.dimension = packing.cell.dimension = static_cast<int>(d);
@@ -230,15 +227,14 @@ Packing packing_of(const py::array_t<double, py::array::c_style | py::array::for
     packing.fixed.assign(fixed.begin(), fixed.end());
     const auto expect = [&](const char* name, std::size_t size) {
         if (size != packing.axes()) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{} has {} entries: expected {}, one per axis", name, size, packing.axes()));
+            refuse(ErrorKind::bad_input, "{} has {} entries: expected {}, one per axis", name, size, packing.axes());
         }
     };
     expect("length", length.size());
     const auto take = [&](const char* name, const auto& words, PerAxis<WallKind>& walls) {
         if (words) {
             expect(name, words->size());
-            std::transform(words->begin(), words->end(), walls.begin(), wall_kind);
+            std::ranges::transform(*words, walls.begin(), wall_kind);
         }
     };
     take("lower", lower, packing.walls.lower);
@@ -421,11 +417,11 @@ void bind_state_class(py::module_& module) {
             [](const PyState& self, const std::vector<double>& stress, std::optional<double> shear) {
                 State changed = self.state;
                 if (stress.size() != changed.packing.axes()) {
-                    throw Error(ErrorKind::bad_input, fmt::format("stress has {} numbers: expected {}", stress.size(),
-                                                                  changed.packing.axes()));
+                    refuse(ErrorKind::bad_input, "stress has {} numbers: expected {}", stress.size(),
+                           changed.packing.axes());
                 }
                 changed.load.path.reset();
-                std::copy(stress.begin(), stress.end(), changed.load.stress.begin());
+                std::ranges::copy(stress, changed.load.stress.begin());
                 changed.load.shear[0] = shear.value_or(changed.load.shear[0]);
                 return parse_any_state(state_text(changed), "State", Dimensions::any_bodies);
             },
@@ -445,15 +441,15 @@ Contact contact_of(std::pair<int, int> pair, const Packing& packing) {
     if (j == no_contact && i >= 0 && i < static_cast<int>(packing.q.size())) {
         return {ContactKind::held, i, 0};
     }
-    if (j <= first_bar && std::any_of(packing.bars.begin(), packing.bars.end(),
-                                      [&](const Bar& b) { return b.i == i && b.j == first_bar - j; })) {
+    if (j <= first_bar &&
+        std::ranges::any_of(packing.bars, [&](const Bar& b) { return b.i == i && b.j == first_bar - j; })) {
         return {ContactKind::bar, i, first_bar - j};
     }
-    throw Error(ErrorKind::bad_input,
-                fmt::format("contact ({}, {}): expected (i, j) of two of {} grains, or (i, -1) left, (i, -2) bottom, "
-                            "(i, -3) right, (i, -4) top wall, of spheres (i, -5) back, (i, -6) front, or (i, -9) held "
-                            "coordinate, (i, -10 - j) bar of the packing",
-                            i, j, disks));
+    refuse(ErrorKind::bad_input,
+           "contact ({}, {}): expected (i, j) of two of {} grains, or (i, -1) left, (i, -2) bottom, (i, -3) right, (i, "
+           "-4) top wall, of spheres (i, -5) back, (i, -6) front, or (i, -9) held coordinate, (i, -10 - j) bar of the "
+           "packing",
+           i, j, disks);
 }
 
 } // namespace

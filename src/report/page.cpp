@@ -1,16 +1,19 @@
 #include "report/page.hpp"
 
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/text.hpp"
 #include "linear/factorisation.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
+#include "report/charts.hpp"
 #include "report/run_walk.hpp"
-#include "report/words.hpp"
 #include "rigidity/isostatic.hpp"
 
 #include <fmt/format.h>
+#include <nettle/base64.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -71,7 +74,7 @@ std::vector<double> forces_of(const State& state) {
 
 std::vector<double> difference(const State& to, const State& from) {
     std::vector<double> moved(to.packing.q.size());
-    std::transform(to.packing.q.begin(), to.packing.q.end(), from.packing.q.begin(), moved.begin(), std::minus<>());
+    std::ranges::transform(to.packing.q, from.packing.q, moved.begin(), std::minus<>());
     return moved;
 }
 
@@ -275,6 +278,31 @@ Json words_json(const LoadWords& words) {
 }
 
 } // namespace
+
+void append_varint(std::string& bytes, std::int64_t value) {
+    constexpr unsigned seven_bits = 0x7f;
+    const auto doubled = static_cast<std::uint64_t>(value) << 1U;
+    std::uint64_t rest = value < 0 ? ~doubled : doubled;
+    for (; rest > seven_bits; rest >>= 7U) {
+        bytes += static_cast<char>((rest & seven_bits) | (seven_bits + 1));
+    }
+    bytes += static_cast<char>(rest);
+}
+
+std::string packed(const std::string& bytes) {
+    uLongf size = ::compressBound(bytes.size());
+    std::string small(size, '\0');
+    // NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): both libraries have their own byte types
+    const int status = ::compress2(reinterpret_cast<Bytef*>(small.data()), &size,
+                                   reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
+    if (status != Z_OK) {
+        refuse(ErrorKind::internal, "zlib: {}", ::zError(status));
+    }
+    std::string text(BASE64_ENCODE_RAW_LENGTH(size), '\0');
+    ::base64_encode_raw(text.data(), size, reinterpret_cast<const std::uint8_t*>(small.data()));
+    // NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
+    return text;
+}
 
 Page run_page(const std::filesystem::path& directory, const std::function<void(std::size_t, std::size_t)>& progress) {
     const RunRecords records = checker::read_records(directory, LastLine::may_be_cut);

@@ -1,6 +1,10 @@
 #pragma once
 /// \file
-/// A run as one HTML file that opens without network, and numbers as text that such a page can hold.
+/// A run, or packings of spheres, as one HTML file that opens without network; numbers as text that such a page can
+/// hold.
+
+#include "io/json.hpp"
+#include "report/triaxial.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -31,5 +35,18 @@ void append_varint(std::string& bytes, std::int64_t value);
 
 /// Base64 of the bytes in zlib's format, which browsers undo (`DecompressionStream("deflate")`).
 std::string packed(const std::string& bytes);
+
+/// Further data on the page of a run.
+struct SphereRun {
+    bool triaxial = false; ///< the length of an axis is loaded: q/p is drawn against the axial strain
+    std::vector<EquilibriumRow> rows{};
+    Load load{};                      ///< of any state of the run
+    std::vector<std::string> names{}; ///< names of the segments
+};
+
+/// A page with a rotating view of the packings, one stored state at a time, with its forces; for a run also q/p and the
+/// volumetric strain against the axial strain, and the table of the equilibria. For display, not for computation.
+/// \param states array of `sphere_view`
+std::string sphere_page(const std::string& title, const json::Json& states, const SphereRun& run = {});
 
 } // namespace isostat

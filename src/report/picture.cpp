@@ -4,7 +4,6 @@
 #include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
 #include "packing/cell_wrap.hpp"
-#include "report/places.hpp"
 
 #include <fmt/format.h>
 
@@ -197,8 +196,8 @@ double arc_depth(const Packing& packing, const ArcBodies& arcs, int disk) {
     if (!arcs.angles(disk)) {
         return 0;
     }
-    const auto ring = std::find_if(packing.arcs.begin(), packing.arcs.end(), [disk](const std::vector<int>& members) {
-        return std::find(members.begin(), members.end(), disk) != members.end();
+    const auto ring = std::ranges::find_if(packing.arcs, [disk](const std::vector<int>& members) {
+        return std::ranges::find(members, disk) != members.end();
     });
     double smallest = HUGE_VAL;
     for (const int member : *ring) {

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// One state as a picture: SVG for people, VTK for ParaView.
+/// One state as a picture: SVG for people, VTK for ParaView. Places are those in the plane (third component 0) and in
+/// space.
 
 #include "io/json.hpp"
 
@@ -44,5 +45,20 @@ std::string vtk_text(const State& state, std::span<const double> forces, const s
 
 /// 1 for disks without a contact of non-zero force. \pre forces.size() == state.contacts.size()
 std::vector<unsigned char> rattler_flags(const State& state, std::span<const double> forces);
+
+/// The same packing with its grains in the cell, and with the images that its contacts then have.
+State in_cell(State state);
+
+PerAxis<double> centre_of(const Packing& packing, int grain);
+
+/// End of the line of a contact: on the wall, or at the centre of the second grain or of its image.
+PerAxis<double> end_of(const Packing& packing, const Contact& contact);
+
+/// A corner of the box or cell, with 0 or the whole length along each axis by the bits of a number. Along an axis with
+/// walls the cell extends from wall to wall.
+PerAxis<double> corner(const Packing& packing, unsigned bits);
+
+/// Of the forces that are not 0; 1 without such forces.
+double mean_force(std::span<const double> forces);
 
 } // namespace isostat

@@ -1,6 +1,5 @@
-#include "report/places.hpp"
-
 #include "packing/cell_wrap.hpp"
+#include "report/picture.hpp"
 
 #include <algorithm>
 #include <cmath>

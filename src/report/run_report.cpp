@@ -1,6 +1,7 @@
 #include "report/run_report.hpp"
 
 #include "certificate/contact_table.hpp"
+#include "core/refuse.hpp"
 #include "core/work.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
@@ -10,11 +11,9 @@
 #include "report/charts.hpp"
 #include "report/page.hpp"
 #include "report/picture.hpp"
-#include "report/sphere_page.hpp"
 #include "report/statistics.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
@@ -44,7 +43,7 @@ class Writer {
         result_.files.push_back(output_ / name);
     }
     void note(const std::string& text) {
-        if (std::find(result_.notes.begin(), result_.notes.end(), text) == result_.notes.end()) {
+        if (std::ranges::find(result_.notes, text) == result_.notes.end()) {
             result_.notes.push_back(text);
         }
     }
@@ -109,7 +108,7 @@ class Writer {
     }
     /// Writes the ParaView files as one series in the order of equilibria; returns in words how many of how many.
     std::string vtk_series(std::size_t equilibria) {
-        std::sort(series_.begin(), series_.end());
+        std::ranges::sort(series_);
         json::Json files = json::Json::array();
         for (const auto& [equilibrium, name] : series_) {
             if (files.empty() || files.back()["time"] != equilibrium) { // the last state is stored twice
@@ -147,7 +146,7 @@ class Writer {
             first_ = q;
         }
         std::vector<double> moved(q.size());
-        std::transform(q.begin(), q.end(), first_.begin(), moved.begin(), std::minus<>());
+        std::ranges::transform(q, first_, moved.begin(), std::minus<>());
         return moved;
     }
     std::vector<double> first_;
@@ -232,13 +231,25 @@ void make_output(const fs::path& directory, const fs::path& output) {
     }
 }
 
+/// Adds the non-zero forces of a state, divided by their mean.
+void add_scaled_forces(const fs::path& state, std::vector<double>& all) {
+    const StateFile file = fs::exists(state) ? read_any_state(state, Dimensions::any_clumps) : StateFile();
+    std::vector<double> forces;
+    for (std::size_t l = 0; l < file.forces.size(); ++l) {
+        if (file.forces[l] != 0 && file.state.contacts[l].is_unilateral()) {
+            forces.push_back(file.forces[l]);
+        }
+    }
+    const double scale = mean(forces);
+    std::ranges::transform(forces, std::back_inserter(all), [scale](double f) { return f / scale; });
+}
+
 } // namespace
 
 ReportResult report_run(const fs::path& directory, const fs::path& output, const ReportOptions& options) {
     const fs::path run = directory / "run.json";
     if (!fs::exists(run)) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: does not exist: expected the folder of a run", run.string()));
+        refuse(run.string(), "does not exist: expected the folder of a run");
     }
     check_mark(directory, run_folder);
     const json::Json parsed = json::Field::parse(read_text(run), run.string());
@@ -296,9 +307,10 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
 ReportResult report_state(const fs::path& state, const fs::path& output, const ReportOptions& options) {
     const std::string name = "forces_" + state.stem().string();
     if (options.html && read_any_state(state, Dimensions::any_bodies).state.packing.dimension == plane) {
-        throw Error(ErrorKind::usage, fmt::format("{}: --html of one state is a view of spheres: this file is of "
-                                                  "disks, and without --html {}.svg shows them",
-                                                  state.string(), name));
+        refuse(
+            ErrorKind::usage,
+            "{}: --html of one state is a view of spheres: this file is of disks, and without --html {}.svg shows them",
+            state.string(), name);
     }
     make_directory(output);
     Writer writer(output, options, false);
@@ -308,23 +320,6 @@ ReportResult report_state(const fs::path& state, const fs::path& output, const R
     }
     return writer.take(fmt::format("force picture of {}\n", state.string()));
 }
-
-namespace {
-
-/// Adds the non-zero forces of a state, divided by their mean.
-void add_scaled_forces(const fs::path& state, std::vector<double>& all) {
-    const StateFile file = fs::exists(state) ? read_any_state(state, Dimensions::any_clumps) : StateFile();
-    std::vector<double> forces;
-    for (std::size_t l = 0; l < file.forces.size(); ++l) {
-        if (file.forces[l] != 0 && file.state.contacts[l].is_unilateral()) {
-            forces.push_back(file.forces[l]);
-        }
-    }
-    const double scale = mean(forces);
-    std::transform(forces.begin(), forces.end(), std::back_inserter(all), [scale](double f) { return f / scale; });
-}
-
-} // namespace
 
 ReportResult report_forces(const std::vector<fs::path>& runs, const fs::path& output, const ReportOptions& options) {
     constexpr double width = 0.25;
@@ -339,7 +334,7 @@ ReportResult report_forces(const std::vector<fs::path>& runs, const fs::path& ou
                             forces[0].size(), forces[1].size()),
                 ""};
     for (const std::vector<double>& of : forces) {
-        largest = of.empty() ? largest : std::max(largest, *std::max_element(of.begin(), of.end()));
+        largest = of.empty() ? largest : std::max(largest, *std::ranges::max_element(of));
     }
     const int bins = static_cast<int>(std::ceil(largest / width));
     const auto first = histogram(forces[0], 0, bins * width, bins), last = histogram(forces[1], 0, bins * width, bins);

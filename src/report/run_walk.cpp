@@ -151,7 +151,7 @@ class Walk {
             return false;
         }
         const bool stays = // the arc has length O(eps): the contact changes and the positions do not
-            std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
+            std::ranges::any_of(event.ties, [](const TieRecord& tie) { return tie.what == "step"; });
         Followed followed;
         if (!stays) {
             followed = follow(start, event, *opening);

@@ -1,6 +1,5 @@
-#include "report/sphere_page.hpp"
-
 #include "io/text.hpp"
+#include "report/page.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,6 @@
 #include "io/text.hpp"
 #include "packing/cell_wrap.hpp"
 #include "report/picture.hpp"
-#include "report/places.hpp"
 
 #include <fmt/format.h>
 
@@ -49,8 +48,7 @@ class Drawing {
     [[nodiscard]] std::string seen_along_y(double width) const {
         std::vector<std::size_t> order(balls_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::sort(order.begin(), order.end(),
-                  [this](std::size_t a, std::size_t b) { return balls_[a].at[1] > balls_[b].at[1]; });
+        std::ranges::sort(order, [this](std::size_t a, std::size_t b) { return balls_[a].at[1] > balls_[b].at[1]; });
         std::string text;
         for (const std::size_t i : order) {
             const Ball& ball = balls_[i];
@@ -196,7 +194,7 @@ class Drawing {
         for (int m = 0; m < 27; ++m) {
             const std::array<int, most_axes> times{m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1};
             PerAxis<double> periods{};
-            std::copy(times.begin(), times.end(), periods.begin());
+            std::ranges::copy(times, periods.begin());
             bool there = true;
             for (std::size_t a = 0; a < periods.size(); ++a) {
                 there = there && (periods[a] == 0 || periodic[a]);

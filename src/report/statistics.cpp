@@ -25,6 +25,16 @@ const EquilibriumRow* find(const Index& index, int number) {
     return found == index.end() ? nullptr : found->second;
 }
 
+Increments collect(const std::vector<EquilibriumRow>& rows, std::optional<double> RearrangementRow::*which) {
+    Increments increments;
+    for (const RearrangementRow& one : rearrangements(rows)) {
+        if (const auto& value = one.*which) {
+            (one.direction > 0 ? increments.loading : increments.unloading).push_back(*value);
+        }
+    }
+    return increments;
+}
+
 } // namespace
 
 std::vector<RearrangementRow> rearrangements(const std::vector<EquilibriumRow>& rows) {
@@ -51,20 +61,6 @@ std::vector<RearrangementRow> rearrangements(const std::vector<EquilibriumRow>& 
     return list;
 }
 
-namespace {
-
-Increments collect(const std::vector<EquilibriumRow>& rows, std::optional<double> RearrangementRow::*which) {
-    Increments increments;
-    for (const RearrangementRow& one : rearrangements(rows)) {
-        if (const auto& value = one.*which) {
-            (one.direction > 0 ? increments.loading : increments.unloading).push_back(*value);
-        }
-    }
-    return increments;
-}
-
-} // namespace
-
 Increments stress_increments(const std::vector<EquilibriumRow>& rows) {
     return collect(rows, &RearrangementRow::stress_increment);
 }
@@ -74,7 +70,7 @@ Increments strain_increments(const std::vector<EquilibriumRow>& rows) {
 }
 
 std::vector<std::pair<double, double>> complementary_distribution(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
+    std::ranges::sort(values);
     std::vector<std::pair<double, double>> points;
     const auto count = static_cast<double>(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -111,7 +107,7 @@ std::vector<EquilibriumRow> path_to(const std::vector<EquilibriumRow>& rows, int
          row = find(index, row->previous)) {
         path.push_back(*row);
     }
-    std::reverse(path.begin(), path.end());
+    std::ranges::reverse(path);
     return path;
 }
 

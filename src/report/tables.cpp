@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace isostat {
 
@@ -40,7 +39,7 @@ void add_increments(std::string& text, const char* what, const Increments& incre
     for (const auto& [name, values] :
          {std::pair{words.rising, &increments.loading}, std::pair{words.falling, &increments.unloading}}) {
         if (!values->empty()) {
-            const auto [low, high] = std::minmax_element(values->begin(), values->end());
+            const auto [low, high] = std::ranges::minmax_element(*values);
             text += fmt::format("{:<20} {:<10} {:>6} values, mean {:.4e}, from {:.4e} to {:.4e}\n", what, name,
                                 values->size(), mean(*values), *low, *high);
         }
@@ -48,13 +47,12 @@ void add_increments(std::string& text, const char* what, const Increments& incre
 }
 
 void add_checks(std::string& text, const std::vector<EquilibriumRow>& rows) {
-    const auto count = [&](auto&& test) { return std::count_if(rows.begin(), rows.end(), test); };
+    const auto count = [&](auto&& test) { return std::ranges::count_if(rows, test); };
     const auto [fewest, most] =
-        std::minmax_element(rows.begin(), rows.end(), [](auto& a, auto& b) { return a.rattlers < b.rattlers; });
-    const auto margin =
-        std::min_element(rows.begin(), rows.end(), [](auto& a, auto& b) { return a.margin < b.margin; });
-    const auto [loose, dense] = std::minmax_element(
-        rows.begin(), rows.end(), [](auto& a, auto& b) { return a.solid_fraction < b.solid_fraction; });
+        std::ranges::minmax_element(rows, [](auto& a, auto& b) { return a.rattlers < b.rattlers; });
+    const auto margin = std::ranges::min_element(rows, [](auto& a, auto& b) { return a.margin < b.margin; });
+    const auto [loose, dense] =
+        std::ranges::minmax_element(rows, [](auto& a, auto& b) { return a.solid_fraction < b.solid_fraction; });
     text += fmt::format("equilibria proved    {} of {}\n", count([](auto& r) { return r.proved; }), rows.size());
     text += fmt::format("h = 0                {} of {}\n", count([](auto& r) { return r.hyperstaticity == 0; }),
                         rows.size());
@@ -74,8 +72,8 @@ void add_arcs(std::string& text, const std::vector<EquilibriumRow>& rows) {
     if (arcs.empty()) {
         return;
     }
-    std::sort(arcs.begin(), arcs.end());
-    const auto single = std::count(arcs.begin(), arcs.end(), 1);
+    std::ranges::sort(arcs);
+    const auto single = std::ranges::count(arcs, 1);
     text += fmt::format("rearrangements       {}, single arcs {:.1f} %, median {} arcs, longest {}\n", arcs.size(),
                         100.0 * static_cast<double>(single) / static_cast<double>(arcs.size()), arcs[arcs.size() / 2],
                         arcs.back());
@@ -91,8 +89,7 @@ void add_irreversible(std::string& text, const std::vector<EquilibriumRow>& rows
             continue;
         }
         const std::vector<EquilibriumRow> path = path_to(rows, last->number);
-        const auto peak =
-            std::max_element(path.begin(), path.end(), [](auto& a, auto& b) { return a.strain2 < b.strain2; });
+        const auto peak = std::ranges::max_element(path, [](auto& a, auto& b) { return a.strain2 < b.strain2; });
         if (last->ratio == path.front().ratio && peak->strain2 > 0) {
             text +=
                 fmt::format("left of peak strain  {:.1f} % after \"{}\" (peak {} {:.5e}, back at {} = {:g}: {:.5e})\n",

@@ -2,14 +2,12 @@
 #include "contact/separation.hpp"
 #include "io/text.hpp"
 #include "report/picture.hpp"
-#include "report/places.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 namespace isostat {
@@ -78,8 +76,7 @@ double tube_of_one(const State& state, std::span<const double> forces) {
     for (const double r : state.packing.radius) {
         radii += r;
     }
-    const auto bearing =
-        static_cast<double>(forces.size() - static_cast<std::size_t>(std::count(forces.begin(), forces.end(), 0.0)));
+    const auto bearing = static_cast<double>(forces.size() - static_cast<std::size_t>(std::ranges::count(forces, 0.0)));
     return sum > 0 ? 0.25 * radii / static_cast<double>(state.packing.radius.size()) * bearing / sum : 0;
 }
 

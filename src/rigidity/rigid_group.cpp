@@ -67,19 +67,6 @@ int motions_to_hold(const DofMap& dofs, const Group& group) {
     return free - rigid_motions(dofs, group);
 }
 
-} // namespace
-
-bool moves_as_one(const DofMap& dofs, int disks, const std::vector<Contact>& among, const Contact& pair) {
-    std::vector<Contact> all = among;
-    all.push_back(pair);
-    if (!unwound(disks, all)) {
-        return false;
-    }
-    return static_cast<int>(among.size()) == motions_to_hold(dofs, Group(disks, all));
-}
-
-namespace {
-
 using Periods = std::array<int, 3>;
 
 /// a + sign m
@@ -91,6 +78,15 @@ Periods moved(Periods a, const Image& m, int sign) {
 }
 
 } // namespace
+
+bool moves_as_one(const DofMap& dofs, int disks, const std::vector<Contact>& among, const Contact& pair) {
+    std::vector<Contact> all = among;
+    all.push_back(pair);
+    if (!unwound(disks, all)) {
+        return false;
+    }
+    return static_cast<int>(among.size()) == motions_to_hold(dofs, Group(disks, all));
+}
 
 std::optional<std::vector<Contact>> unwound(int disks, std::vector<Contact> contacts) {
     const auto any = [&](auto what) { return std::any_of(contacts.begin(), contacts.end(), what); };

@@ -1,9 +1,9 @@
 #include "contact/candidates.hpp"
+#include "core/refuse.hpp"
 #include "exact/independent_columns.hpp"
 #include "linear/factorisation.hpp"
 #include "packing/load_faults.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/rigidity/counting.hpp>
 #include <isostat/scene/scene.hpp>
 
@@ -52,51 +52,49 @@ std::string self_stresses(const State& state) {
 } // namespace
 
 void check_start(const State& state, const std::string& source, bool hyperstatic_allowed) {
-    const auto bad = [&](const std::string& what) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: {}", source, what));
-    };
     validate(state.packing, source);
     require_pressed_sides(state.packing, state.load, true, source);
     if (const auto pair = fixed_overlap(state.packing)) {
-        bad(fmt::format("{} overlap, and cannot move: expected every gap >= 0",
-                        to_string(*pair, state.packing.dimension)));
+        refuse(source, "{} overlap, and cannot move: expected every gap >= 0",
+               to_string(*pair, state.packing.dimension));
     }
     // The value is far above the rounding of a vertex (1e-15) and far below any visible gap.
     const double visible = 1e-6 * state.packing.min_radius();
     const Admissibility admissible = certify_admissible(state.packing, visible);
     if (admissible.verdict == Verdict::refuted) {
-        bad(fmt::format("grains overlap: the gap of {} is {:.6g}: expected every gap >= 0 (isostat snap makes the "
-                        "equilibrium next to soft grains)",
-                        to_string(admissible.worst, state.packing.dimension), admissible.worst_gap));
+        refuse(source,
+               "grains overlap: the gap of {} is {:.6g}: expected every gap >= 0 (isostat snap makes the equilibrium "
+               "next to soft grains)",
+               to_string(admissible.worst, state.packing.dimension), admissible.worst_gap);
     }
     for (const Contact& contact : state.contacts) {
         const double opening = gap(state.packing, contact);
         if (std::abs(opening) > visible) {
-            bad(fmt::format("the gap of the listed contact {} is {:.6g}: expected 0",
-                            to_string(contact, state.packing.dimension), opening));
+            refuse(source, "the gap of the listed contact {} is {:.6g}: expected 0",
+                   to_string(contact, state.packing.dimension), opening);
         }
     }
     const Counting count = count_contacts(state.packing, state.contacts);
     if (count.dof_count == 0) {
-        bad("N_f = 0: there are no degrees of freedom: expected a grain that can move");
+        refuse(source, "N_f = 0: there are no degrees of freedom: expected a grain that can move");
     }
     if (count.hyperstaticity > 0 && count.mechanisms == 0) {
         if (hyperstatic_allowed) {
             return;
         }
         const std::string basis = self_stresses(state);
-        bad(fmt::format(
-            "N_f = {} degrees of freedom, N = {} contacts, rank {}: h = {}, k = 0: a trajectory starts from "
-            "an isostatic structure, N = N_f = rank; ties = \"choose\" in [run] keeps the contacts that "
-            "carry the load when the radii change a little{}{}",
-            count.dof_count, count.contact_count, count.rank, count.hyperstaticity,
-            basis.empty() ? "" : "; a basis of the self-stresses is in the contacts ", basis));
+        refuse(source,
+               "N_f = {} degrees of freedom, N = {} contacts, rank {}: h = {}, k = 0: a trajectory starts from an "
+               "isostatic structure, N = N_f = rank; ties = \"choose\" in [run] keeps the contacts that carry the load "
+               "when the radii change a little{}{}",
+               count.dof_count, count.contact_count, count.rank, count.hyperstaticity,
+               basis.empty() ? "" : "; a basis of the self-stresses is in the contacts ", basis);
     }
     if (count.hyperstaticity != 0 || count.mechanisms != 0) {
-        bad(fmt::format("N_f = {} degrees of freedom, N = {} contacts, rank {}: h = {}, k = {}: a trajectory starts "
-                        "from an isostatic "
-                        "structure, N = N_f = rank (h = k = 0)",
-                        count.dof_count, count.contact_count, count.rank, count.hyperstaticity, count.mechanisms));
+        refuse(source,
+               "N_f = {} degrees of freedom, N = {} contacts, rank {}: h = {}, k = {}: a trajectory starts from an "
+               "isostatic structure, N = N_f = rank (h = k = 0)",
+               count.dof_count, count.contact_count, count.rank, count.hyperstaticity, count.mechanisms);
     }
 }
 

@@ -1,3 +1,4 @@
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/text.hpp"
 #include "io/toml.hpp"
@@ -5,7 +6,6 @@
 #include "scene/radii.hpp"
 #include "scene/settings.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/scene/scene.hpp>
 
@@ -35,9 +35,8 @@ void read_radii_list(SceneSection& section, const std::vector<double>& radii, Pr
     }
     for (std::size_t i = 0; i < radii.size(); ++i) {
         if (!(radii[i] >= smallest_size && radii[i] <= largest_size)) {
-            section.refuse("radii", fmt::format("radii[{}] in [packing] is {}: expected a positive radius, from {} "
-                                                "to {}",
-                                                i, radii[i], smallest_size, largest_size));
+            section.refuse("radii", "radii[{}] in [packing] is {}: expected a positive radius, from {} to {}", i,
+                           radii[i], smallest_size, largest_size);
         }
     }
     options.radii = radii;
@@ -48,8 +47,7 @@ void read_radii_list(SceneSection& section, const std::vector<double>& radii, Pr
 void read_start(SceneSection& section, const std::string& file, Scene& scene, const std::filesystem::path& folder) {
     for (const char* key : {"jitter", "seed", "aspect"}) {
         if (section.has(key)) {
-            section.refuse(
-                key, fmt::format("'{}' in [packing] is of a preparation: a packing read from a file has none", key));
+            section.refuse(key, "'{}' in [packing] is of a preparation: a packing read from a file has none", key);
         }
     }
     scene.start = *section.file("file", folder);
@@ -63,9 +61,9 @@ int read_dimension(SceneSection& section, const std::string& source) {
         if (list) {
             return static_cast<int>(section.integer("dimension", plane, plane, most_axes));
         }
-        section.refuse("dimension", fmt::format("'dimension' in [packing] goes with 'radii' or 'radii_file' and has no "
-                                                "meaning with '{}'",
-                                                source));
+        section.refuse("dimension",
+                       "'dimension' in [packing] goes with 'radii' or 'radii_file' and has no meaning with '{}'",
+                       source);
     }
     return source == "spheres" ? 3 : plane;
 }
@@ -82,17 +80,16 @@ void read_packing(SceneSection& section, Scene& scene, const std::filesystem::pa
                                                                {"spheres", spheres.has_value()},
                                                                {"radii", radii.has_value()},
                                                                {"radii_file", radii_file.has_value()}}};
-    const auto chosen = std::find_if(sources.begin(), sources.end(), [](const auto& s) { return s.second; });
+    const auto chosen = std::ranges::find_if(sources, [](const auto& s) { return s.second; });
     if (chosen == sources.end()) {
         section.refuse(
-            "", "[packing] does not say where the grains come from: expected file, disks, radii or radii_file, or "
-                "spheres");
+            "",
+            "[packing] does not say where the grains come from: expected file, disks, radii or radii_file, or spheres");
     }
     for (auto other = chosen + 1; other != sources.end(); ++other) {
         if (other->second) {
-            section.refuse(other->first,
-                           fmt::format("'{}' and '{}' in [packing] exclude each other: expected one of them",
-                                       chosen->first, other->first));
+            section.refuse(other->first, "'{}' and '{}' in [packing] exclude each other: expected one of them",
+                           chosen->first, other->first);
         }
     }
     if (!disks && !spheres) {
@@ -133,8 +130,8 @@ void read_cell(SceneSection& section, Scene& scene) {
         "kind", 0, {in_plane ? "rectangular" : "orthorhombic", in_plane ? "tilted" : "triclinic", "isotropic"})];
     const std::size_t count = options.radii.empty() ? static_cast<std::size_t>(options.disks) : options.radii.size();
     if (count > static_cast<std::size_t>(options.large_above)) {
-        section.refuse("", fmt::format("[cell] and {} {}: expected at most {} in a periodic cell", count,
-                                       in_plane ? "disks" : "spheres", options.large_above));
+        section.refuse("", "[cell] and {} {}: expected at most {} in a periodic cell", count,
+                       in_plane ? "disks" : "spheres", options.large_above);
     }
 }
 
@@ -185,10 +182,10 @@ void read_path(SceneSection& section, Scene& scene) {
     }
     any.q.assign(any.coordinate_count(), 1);
     if (const std::string fault = fault_of_path(any, scene.path); !fault.empty()) {
-        section.refuse(key, fmt::format("'{}' in [load] is a direction in the space of stresses, {}", key, fault));
+        section.refuse(key, "'{}' in [load] is a direction in the space of stresses, {}", key, fault);
     }
     if (prepares) {
-        std::copy(scene.path.begin(), scene.path.end(), options.path.emplace().begin());
+        std::ranges::copy(scene.path, options.path.emplace().begin());
     }
 }
 
@@ -223,9 +220,8 @@ void read_loaded(SceneSection& section, Scene& scene) {
     }
     options.loaded_axis = static_cast<int>(place) + (in_plane ? 1 : 0);
     if (*options.loaded_axis >= options.dimension && options.cell != PreparedCell::tilted) {
-        section.refuse("loaded", fmt::format("'loaded' in [load] is \"{}\" and no tilt moves: expected kind = \"{}\" "
-                                             "in [cell]",
-                                             scene.loaded, in_plane ? "tilted" : "triclinic"));
+        section.refuse("loaded", "'loaded' in [load] is \"{}\" and no tilt moves: expected kind = \"{}\" in [cell]",
+                       scene.loaded, in_plane ? "tilted" : "triclinic");
     }
 }
 
@@ -275,9 +271,8 @@ void read_load(SceneSection& section, Scene& scene) {
             section.fail("sigma1", "a positive stress");
         }
         if (scene.preparation.cell == PreparedCell::tilted && scene.preparation.load != LoadKind::nominal) {
-            section.refuse("kind",
-                           "'kind' in [load] is \"true\" and the tilt of the [cell] moves: expected \"nominal\" "
-                           "(true stresses have no potential there), or another kind in [cell]");
+            section.refuse("kind", "'kind' in [load] is \"true\" and the tilt of the [cell] moves: expected "
+                                   "\"nominal\" (true stresses have no potential there), or another kind in [cell]");
         }
         scene.preparation.stress = section.number("sigma1", 1, 1e-100, 1e100, "a positive stress from 1e-100 to 1e100");
     }
@@ -357,9 +352,8 @@ void read_run(SceneSection& section, Scene& scene) {
     run.ties = section.word("ties", run.ties, tie_policy_words);
     for (const char* key : {"ties_seed", "max_choices"}) {
         if (section.integer(key) && !run.at_first_order()) {
-            section.refuse(key, fmt::format("'{}' in [run] belongs to ties = \"choose\": with ties = \"stop\" it has "
-                                            "no meaning",
-                                            key));
+            section.refuse(key, "'{}' in [run] belongs to ties = \"choose\": with ties = \"stop\" it has no meaning",
+                           key);
         }
     }
     if (run.at_first_order()) {
@@ -382,8 +376,8 @@ void read_output(SceneSection& section, Scene& scene) {
 const toml::table* table_of(const toml::table& document, const char* name, const std::string& source) {
     const toml::node* node = document.get(name);
     if (node != nullptr && !node->is_table()) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}:{}: '{}' is not a table: expected [{}]", source,
-                                                      node->source().begin.line, name, name));
+        refuse(ErrorKind::bad_input, "{}:{}: '{}' is not a table: expected [{}]", source, node->source().begin.line,
+               name, name);
     }
     return node == nullptr ? nullptr : node->as_table();
 }
@@ -392,10 +386,9 @@ void check_sections(const toml::table& document, const std::string& source) {
     static constexpr std::array<std::string_view, 7> sections{"packing",   "cell", "preparation", "load",
                                                               "programme", "run",  "output"};
     for (const auto& [key, node] : document) {
-        if (std::find(sections.begin(), sections.end(), key.str()) == sections.end()) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}:{}: unknown section or key '{}': expected one of [{}]", source,
-                                    key.source().begin.line, key.str(), fmt::join(sections, "], [")));
+        if (std::ranges::find(sections, key.str()) == sections.end()) {
+            refuse(ErrorKind::bad_input, "{}:{}: unknown section or key '{}': expected one of [{}]", source,
+                   key.source().begin.line, key.str(), fmt::join(sections, "], ["));
         }
     }
 }
@@ -405,13 +398,12 @@ void read_programme(const toml::table& document, Scene& scene) {
     if (const toml::node* node = document.get("programme")) {
         const toml::array* steps = node->as_array();
         if (steps == nullptr || !steps->is_homogeneous<toml::table>()) {
-            throw Error(
-                ErrorKind::bad_input,
-                fmt::format("{}:{}: 'programme' is not a list of tables: expected [[programme]] for each segment",
-                            source, node->source().begin.line));
+            refuse(ErrorKind::bad_input,
+                   "{}:{}: 'programme' is not a list of tables: expected [[programme]] for each segment", source,
+                   node->source().begin.line);
         }
-        const bool ratios = std::any_of(steps->begin(), steps->end(),
-                                        [](const toml::node& step) { return step.as_table()->contains("to"); });
+        const bool ratios =
+            std::ranges::any_of(*steps, [](const toml::node& step) { return step.as_table()->contains("to"); });
         const Load load = ratios ? load_at_start(scene) : Load();
         for (const toml::node& step : *steps) {
             SceneSection one(step.as_table(), "[programme]", source, scene.settings);
@@ -419,11 +411,9 @@ void read_programme(const toml::table& document, Scene& scene) {
         }
     }
     if (scene.preparation.cell == PreparedCell::isotropic && !scene.programme.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: kind = \"isotropic\" in [cell] and a [[programme]]: a load on the size of a cell "
-                                "only scales the forces, no contact ever opens. Expected no programme (`prepare` takes "
-                                "such a cell), or another kind",
-                                source));
+        refuse(source,
+               "kind = \"isotropic\" in [cell] and a [[programme]]: a load on the size of a cell only scales the "
+               "forces, no contact ever opens. Expected no programme (`prepare` takes such a cell), or another kind");
     }
 }
 
@@ -439,9 +429,7 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
         return SceneSection(table_of(document, name, source), name, source, scene.settings);
     };
     if (table_of(document, "packing", source) == nullptr) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: has no [packing]: expected one with file, disks, radii or radii_file, or spheres",
-                                source));
+        refuse(source, "has no [packing]: expected one with file, disks, radii or radii_file, or spheres");
     }
     SceneSection packing = section("packing");
     read_packing(packing, scene, folder);
@@ -456,9 +444,8 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
         read_preparation(preparation, scene);
         preparation.finish();
     } else if (const toml::node* node = document.get("preparation")) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: [preparation] has no meaning: the packing is read from a file", source,
-                                node->source().begin.line));
+        refuse(ErrorKind::bad_input, "{}:{}: [preparation] has no meaning: the packing is read from a file", source,
+               node->source().begin.line);
     }
     SceneSection load = section("load");
     read_load(load, scene);
@@ -468,10 +455,8 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
     read_run(run, scene);
     run.finish();
     if (scene.run.certify == CertifyLevel::arcs && load_at_start(scene).path) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: certify = \"arcs\" in [run] and several stresses that change together: expected "
-                                "\"decisions\" or \"states\", arcs are enclosed under loads with one",
-                                source));
+        refuse(source, "certify = \"arcs\" in [run] and several stresses that change together: expected \"decisions\" "
+                       "or \"states\", arcs are enclosed under loads with one");
     }
     SceneSection output = section("output");
     read_output(output, scene);

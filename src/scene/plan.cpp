@@ -34,13 +34,13 @@ bool equal_radii(const PreparationOptions& options) {
         return law.kind == RadiiLaw::equal || law.kind == RadiiLaw::bidisperse || law.smallest == law.largest;
     }
     std::vector<double> sorted = options.radii;
-    std::sort(sorted.begin(), sorted.end());
-    return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+    std::ranges::sort(sorted);
+    return std::ranges::adjacent_find(sorted) != sorted.end();
 }
 
 bool all_equal(const PreparationOptions& options) {
     const DiameterLaw& law = options.diameters;
-    const auto& [least, most] = std::minmax_element(options.radii.begin(), options.radii.end());
+    const auto& [least, most] = std::ranges::minmax_element(options.radii);
     return options.radii.empty() ? law.kind == RadiiLaw::equal || law.smallest == law.largest : *least == *most;
 }
 

@@ -1,6 +1,6 @@
+#include "core/refuse.hpp"
 #include "core/roundoff.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/scene/scene.hpp>
 
@@ -33,8 +33,11 @@ struct Made {
     Range ratio;
 };
 
-[[noreturn]] void refuse(const Scene& scene, const ProgrammeStep& step, const std::string& what) {
-    throw Error(ErrorKind::bad_input, fmt::format("{}:{}: segment \"{}\": {}", scene.file, step.line, step.name, what));
+template <class... Values>
+[[noreturn]] void refuse(const Scene& scene, const ProgrammeStep& step, fmt::format_string<Values...> what,
+                         Values&&... values) {
+    isostat::refuse(fmt::format("{}:{}: segment \"{}\"", scene.file, step.line, step.name), what,
+                    std::forward<Values>(values)...);
 }
 
 std::string range_text(const Range& range) {
@@ -56,9 +59,8 @@ Range range_at(const Scene& scene, const ProgrammeStep& step, const std::vector<
             return m.ratio;
         }
     }
-    refuse(scene, step,
-           fmt::format("starts from equilibrium {}, but the segments before end at number {}: expected one of them",
-                       from, *made.back().last));
+    refuse(scene, step, "starts from equilibrium {}, but the segments before end at number {}: expected one of them",
+           from, *made.back().last);
 }
 
 /// The possible ratios at the end of a segment.
@@ -66,7 +68,7 @@ Range after(const Scene& scene, const ProgrammeStep& step, const Range& start) {
     const bool known = start.low == start.high;
     if (step.action == Action::to) {
         if (known && *step.to == start.low) {
-            refuse(scene, step, fmt::format("to = {}, where the run already is: there is nothing to do", *step.to));
+            refuse(scene, step, "to = {}, where the run already is: there is nothing to do", *step.to);
         }
         return {*step.to, *step.to};
     }
@@ -74,10 +76,9 @@ Range after(const Scene& scene, const ProgrammeStep& step, const Range& start) {
     if (step.to) {
         const bool behind = up ? *step.to <= start.low : *step.to >= start.high;
         if (behind) {
-            refuse(scene, step,
-                   fmt::format("{} to a ratio {} of {}, but the ratio at its start is {}: expected a {} one",
-                               word_of(step.action, action_words), step.ratio, *step.to, range_text(start),
-                               up ? "larger" : "smaller"));
+            refuse(scene, step, "{} to a ratio {} of {}, but the ratio at its start is {}: expected a {} one",
+                   word_of(step.action, action_words), step.ratio, *step.to, range_text(start),
+                   up ? "larger" : "smaller");
         }
         if (!step.equilibria) {
             return {*step.to, *step.to};

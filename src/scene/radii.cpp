@@ -35,7 +35,7 @@ std::string word(RadiiLaw law) {
 }
 
 bool belongs(const LawKey& key, RadiiLaw law) {
-    return std::find(key.laws.begin(), key.laws.end(), law) != key.laws.end();
+    return std::ranges::find(key.laws, law) != key.laws.end();
 }
 
 /// Whether a key is given; reading it marks it as known.
@@ -48,11 +48,9 @@ void check_keys(SceneSection& section, RadiiLaw law) {
     for (const LawKey& key : law_keys) {
         if (given(section, key.name) && !belongs(key, law)) {
             std::vector<std::string> laws;
-            std::transform(key.laws.begin(), key.laws.end(), std::back_inserter(laws),
-                           [](RadiiLaw other) { return word(other); });
-            section.refuse(key.name,
-                           fmt::format("'{}' in [packing] goes with law = {} and has no meaning with law = {}",
-                                       key.name, fmt::join(laws, ", "), word(law)));
+            std::ranges::transform(key.laws, std::back_inserter(laws), [](RadiiLaw other) { return word(other); });
+            section.refuse(key.name, "'{}' in [packing] goes with law = {} and has no meaning with law = {}", key.name,
+                           fmt::join(laws, ", "), word(law));
         }
     }
 }
@@ -62,8 +60,8 @@ void read_ends(SceneSection& section, DiameterLaw& law) {
     if (const auto ends = section.numbers("diameters")) {
         if (ends->size() != 2 || !((*ends)[0] >= smallest_size) || !((*ends)[1] >= (*ends)[0]) ||
             !((*ends)[1] <= largest_size)) {
-            section.fail("diameters", fmt::format("[smallest, largest] with 0 < smallest <= largest, from {} to {}",
-                                                  smallest_size, largest_size));
+            section.fail("diameters", "[smallest, largest] with 0 < smallest <= largest, from {} to {}", smallest_size,
+                         largest_size);
         }
         law.smallest = (*ends)[0];
         law.largest = (*ends)[1];
@@ -78,9 +76,9 @@ DiameterLaw read_law(SceneSection& section) {
     law.kind = section.word("law", law.kind, law_words);
     check_keys(section, law.kind);
     const auto has = [&](const char* name) {
-        return belongs(*std::find_if(law_keys.begin(), law_keys.end(),
-                                     [&](const LawKey& key) { return key.name == std::string_view(name); }),
-                       law.kind);
+        return belongs(
+            *std::ranges::find_if(law_keys, [&](const LawKey& key) { return key.name == std::string_view(name); }),
+            law.kind);
     };
     constexpr double largest_ratio = 1e6;
     if (has("diameter")) {
@@ -104,7 +102,7 @@ DiameterLaw read_law(SceneSection& section) {
         law.exponent = section.number("exponent", law.exponent, -100, 100, "a number from -100 to 100");
     }
     if (const std::string fault = fault_of(law); !fault.empty()) {
-        section.refuse("law", fmt::format("law = {} in [packing]: {}", word(law.kind), fault));
+        section.refuse("law", "law = {} in [packing]: {}", word(law.kind), fault);
     }
     return law;
 }
@@ -120,10 +118,8 @@ void refuse_law(SceneSection& section, const std::string& source) {
         }
     }
     if (!found.empty()) {
-        section.refuse(found.front(),
-                       fmt::format("'{}' in [packing] goes with 'disks' or 'spheres' and has no meaning with "
-                                   "'{}'",
-                                   found.front(), source));
+        section.refuse(found.front(), "'{}' in [packing] goes with 'disks' or 'spheres' and has no meaning with '{}'",
+                       found.front(), source);
     }
 }
 
@@ -137,7 +133,7 @@ std::vector<double> read_radii(const std::filesystem::path& path) {
         const TextLine row = rows.next_row(name, 1);
         const double radius = row.number(0, name);
         if (!(radius >= smallest_size && radius <= largest_size)) {
-            row.fail(row.field(0), name, fmt::format("a positive number from {} to {}", smallest_size, largest_size));
+            row.fail(row.field(0), name, "a positive number from {} to {}", smallest_size, largest_size);
         }
         radii.push_back(radius);
     } while (rows.find_row(blanks_or_commas));

@@ -1,9 +1,9 @@
 #include "certificate/state_certifier.hpp"
+#include "core/refuse.hpp"
 #include "io/json.hpp"
 #include "packing/arc_bodies.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/scene/scene.hpp>
 
@@ -53,8 +53,8 @@ class Both final : public RunObserver {
 
 void choose_loaded(State& state, const Scene& scene, const std::string& source) {
     const auto bad = [&](const char* what, const char* expected) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: {}, and 'loaded' in [load] of {} is \"{}\": expected {}",
-                                                      source, what, scene.file, scene.loaded, expected));
+        refuse(source, "{}, and 'loaded' in [load] of {} is \"{}\": expected {}", what, scene.file, scene.loaded,
+               expected);
     };
     const Packing& packing = state.packing;
     const bool in_plane = packing.dimension == plane;
@@ -62,13 +62,10 @@ void choose_loaded(State& state, const Scene& scene, const std::string& source) 
                                                     : std::vector<std::string>{"x", "y", "z", "xy", "xz", "yz"};
     if (!scene.path.empty()) {
         if (const std::string fault = fault_of_path(packing, scene.path); !fault.empty()) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: [load] of {} names a direction in the space of stresses, "
-                                    "{}",
-                                    source, scene.file, fault));
+            refuse(source, "[load] of {} names a direction in the space of stresses, {}", scene.file, fault);
         }
         StressRates rate{};
-        std::copy(scene.path.begin(), scene.path.end(), rate.begin());
+        std::ranges::copy(scene.path, rate.begin());
         state.load.follow(rate);
         return;
     }
@@ -76,7 +73,7 @@ void choose_loaded(State& state, const Scene& scene, const std::string& source) 
         return;
     }
     state.load.path.reset();
-    const auto axis = static_cast<std::size_t>(std::find(words.begin(), words.end(), scene.loaded) - words.begin());
+    const auto axis = static_cast<std::size_t>(std::ranges::find(words, scene.loaded) - words.begin());
     if (axis == words.size()) {
         bad(in_plane ? "disks" : "spheres", in_plane ? "\"y\" or \"tilt\"" : "an axis, x to z, or a tilt, xy to yz");
     }
@@ -103,19 +100,18 @@ State clumps_at_rest(State state, const Scene& scene, const std::string& source)
         state.load.infinitesimal = generic_infinitesimal(state.packing.radius, seed, state.packing.dimension);
         balance(state.load.infinitesimal, state.packing.cell);
     }
-    const bool moves = std::any_of(state.contacts.begin(), state.contacts.end(),
-                                   [](const Contact& c) { return c.kind == ContactKind::held; });
+    const bool moves =
+        std::ranges::any_of(state.contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
     if (!moves) {
         return state; // if a force is negative, the run records the rearrangement
     }
     State unpressed = state;
     unpressed.load.infinitesimal.clear();
     if (const Certification truth = certify(unpressed); !truth.claims.counting) {
-        throw Error(
-            ErrorKind::bad_input,
-            fmt::format("{}: {}: a trajectory of clumps starts from an isostatic structure, but for bodies that "
-                        "bear no force or turn about one member",
-                        source, truth.claims.undecided.front()));
+        refuse(source,
+               "{}: a trajectory of clumps starts from an isostatic structure, but for bodies that bear no force or "
+               "turn about one member",
+               truth.claims.undecided.front());
     }
     Segment rest;
     rest.equilibria = 0; // only the initial equilibrium
@@ -127,8 +123,8 @@ State clumps_at_rest(State state, const Scene& scene, const std::string& source)
     (void)snap_to_grid(state.packing);
     const SegmentOutcome outcome = run_segment(state, rest, 0, options, counters, nobody);
     if (outcome.failure) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: bodies that are free to move do not come to rest: {}",
-                                                      source, outcome.failure->message(state.packing.dimension)));
+        refuse(source, "bodies that are free to move do not come to rest: {}",
+               outcome.failure->message(state.packing.dimension));
     }
     note(state, "arcs_to_rest", counters.steps);
     return state;
@@ -148,8 +144,7 @@ State start_of_scene(State state, const Scene& scene, const std::string& source)
     state.perturbation.reset(); // a run chooses its own
     for (std::size_t a = 0; a < state.packing.axes(); ++a) {
         if (!(state.load.stress[a] > 0)) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: load.stress[{}] is {}: expected a positive stress",
-                                                          source, a, state.load.stress[a]));
+            refuse(source, "load.stress[{}] is {}: expected a positive stress", a, state.load.stress[a]);
         }
     }
     require_followed(state, source);
@@ -203,8 +198,8 @@ RunHeader header_of(const Scene& scene, const std::string& program, const std::s
 std::string advice(const Scene& scene, const Failure& failure, const Packing& packing) {
     std::vector<double> radius = packing.radius;
     const bool can_choose = !scene.run.chooses();
-    std::sort(radius.begin(), radius.end());
-    const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
+    std::ranges::sort(radius);
+    const bool equal = std::ranges::adjacent_find(radius) != radius.end();
     const bool open = failure.kind <= FailureKind::undecided || failure.kind == FailureKind::not_converged;
     if (!open) {
         return "";
@@ -241,9 +236,8 @@ SceneEnding play_scene(const Scene& scene, State state, RunDirectory& directory,
         counters = point->counters;
         const std::optional<int> goal = scene.programme[static_cast<std::size_t>(point->segment)].equilibria;
         if (goal && point->made > *goal) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: made is {}: expected at most {}, as the scene says",
-                                    (directory.path() / "checkpoint.json").string(), point->made, *goal));
+            refuse((directory.path() / "checkpoint.json").string(),
+                   "made is {}: expected at most {}, as the scene says", point->made, *goal);
         }
         programme.first = static_cast<std::size_t>(point->segment) + (point->segment_done ? 1 : 0);
         programme.made = point->segment_done ? 0 : point->made;

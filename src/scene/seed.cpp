@@ -1,10 +1,10 @@
 #include "scene/seed.hpp"
 
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/toml.hpp"
 #include "scene/settings.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <fmt/format.h>
@@ -38,14 +38,13 @@ std::string with_seed(const std::string& marked, std::uint64_t seed, const std::
     const std::string text(without_byte_order_mark(marked));
     const Scene scene = parse_scene(text, source, folder);
     if (!scene.start.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: file in [packing] is {}: a packing that is read has no seed and all samples would "
-                                "be the same: expected disks, radii or radii_file, or spheres",
-                                source, scene.start.string()));
+        refuse(source,
+               "file in [packing] is {}: a packing that is read has no seed and all samples would be the same: "
+               "expected disks, radii or radii_file, or spheres",
+               scene.start.string());
     }
     if (seed > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: seed {}: expected at most {}", source, seed,
-                                                      std::numeric_limits<std::int64_t>::max()));
+        refuse(source, "seed {}: expected at most {}", seed, std::numeric_limits<std::int64_t>::max());
     }
     const auto value_of = [](const toml::table& document, const char* key) { return document["packing"][key].node(); };
     std::string result = text;
@@ -57,17 +56,14 @@ std::string with_seed(const std::string& marked, std::uint64_t seed, const std::
     } else {
         const std::size_t header = TomlLines(result).offset(document["packing"].node()->source().begin);
         if (result[header] != '[') {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: [packing] has no seed that could be replaced: expected seed = 1", source));
+            refuse(source, "[packing] has no seed that could be replaced: expected seed = 1");
         }
         const std::size_t next = std::min(result.find('\n', header), result.size());
         result.insert(next, fmt::format("\nseed = {}", seed));
     }
     const PreparationOptions made = parse_scene(result, source, folder).preparation;
     if (made.seed != seed || made.radii != scene.preparation.radii) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: seed or radii_file of [packing] could not be replaced: "
-                                                      "expected each on a line of its own",
-                                                      source));
+        refuse(source, "seed or radii_file of [packing] could not be replaced: expected each on a line of its own");
     }
     return result;
 }

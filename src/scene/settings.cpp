@@ -19,7 +19,7 @@ double SceneSection::number(const std::string& key, double fallback, double lowe
 long SceneSection::integer(const std::string& key, long fallback, long lowest, long highest) {
     const long value = integer(key).value_or(fallback);
     if (value < lowest || value > highest) {
-        fail(key, fmt::format("an integer from {} to {}", lowest, highest));
+        fail(key, "an integer from {} to {}", lowest, highest);
     }
     record(key, fmt::format("{}", value));
     return value;

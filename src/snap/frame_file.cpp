@@ -1,9 +1,8 @@
 #include "snap/frame_file.hpp"
 
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/numbers.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,10 +33,6 @@ std::string FrameFile::where(int line) const {
     return fmt::format("{}:{}", source_, line);
 }
 
-void FrameFile::fail(const std::string& message) const {
-    throw Error(ErrorKind::bad_input, fmt::format("{}: {}", where(lines_), message));
-}
-
 std::string FrameFile::take_line() {
     std::string line = std::move(pending_);
     pending_.clear();
@@ -45,7 +40,7 @@ std::string FrameFile::take_line() {
         line += '\n';
     }
     if (file_.bad()) {
-        throw Error(ErrorKind::bad_input, source_ + ": cannot read");
+        refuse(source_, "cannot read");
     }
     return line;
 }
@@ -138,8 +133,7 @@ void FrameFile::read_rows(TextLines& lines, FileFrame& frame) const {
     for (long k = 0; k < header.rows; ++k) {
         const std::string what = fmt::format("row {} of {} of time step {}", k + 1, header.rows, header.timestep);
         if (lines.at_end() && !pending_.empty()) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: '{}': expected {}", where(lines.number() + 1),
-                                                          pending_.substr(0, pending_.find('\n')), what));
+            refuse(where(lines.number() + 1), "'{}': expected {}", pending_.substr(0, pending_.find('\n')), what);
         }
         TextLine line = lines.next(what);
         line.require_size(header.names.size(), what);
@@ -147,8 +141,7 @@ void FrameFile::read_rows(TextLines& lines, FileFrame& frame) const {
     }
     if (!lines.only_blanks()) {
         const TextLine line = lines.next("a row");
-        line.fail(line.text(), "line after the rows",
-                  fmt::format("the next frame: {} rows were announced", header.rows));
+        line.fail(line.text(), "line after the rows", "the next frame: {} rows were announced", header.rows);
     }
 }
 
@@ -172,7 +165,7 @@ std::optional<FileFrame> FrameFile::next() {
                                                : format_ == Format::xyz ? take_xyz()
                                                                         : take_table());
     TextLines lines(*frame.text, source_, lines_);
-    lines_ += static_cast<int>(std::count(frame.text->begin(), frame.text->end(), '\n'));
+    lines_ += static_cast<int>(std::ranges::count(*frame.text, '\n'));
     if (lines.only_blanks()) {
         return std::nullopt;
     }
@@ -195,26 +188,21 @@ FileFrame FrameFile::at(long timestep) {
         const long found = frame->header.timestep;
         if (found <= last_) {
             const int line = format_ == Format::table ? frame->rows.front().number() : frame->header.line;
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: time step {} after {}: expected each once, in their order", where(line), found,
-                                    last_));
+            refuse(where(line), "time step {} after {}: expected each once, in their order", found, last_);
         }
         last_ = found;
         if (found == timestep) {
             return std::move(*frame);
         }
     }
-    throw Error(ErrorKind::bad_input,
-                fmt::format("{}: no time step {} (after the one before): expected those of the frames, in their order",
-                            source_, timestep));
+    refuse(source_, "no time step {} (after the one before): expected those of the frames, in their order", timestep);
 }
 
 std::size_t FrameFile::column(const FileFrame& frame, const std::string& name) const {
     const std::string place = where(frame.header.line);
     const int found = foreign::find_column(frame.header.names, name);
     if (found < 0) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: no column '{}': expected one of {}", place, name,
-                                                      fmt::join(frame.header.names, ", ")));
+        refuse(place, "no column '{}': expected one of {}", name, fmt::join(frame.header.names, ", "));
     }
     auto twice = foreign::columns_twice(frame.header.names);
     std::erase_if(twice, [found](const auto& pair) { return pair.first != found; });

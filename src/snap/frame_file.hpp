@@ -39,7 +39,9 @@ class FrameFile {
     /// "FILE:LINE".
     [[nodiscard]] std::string where(int line) const;
     /// Throws an error at the end of the file.
-    [[noreturn]] void fail(const std::string& message) const;
+    template <class... Values> [[noreturn]] void fail(fmt::format_string<Values...> message, Values&&... values) const {
+        refuse(where(lines_), message, std::forward<Values>(values)...);
+    }
 
   private:
     enum class Format { dump, xyz, table };

@@ -68,7 +68,7 @@ std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const 
         found = std::move(next);
     }
     if (!found || (frame && number <= *frame)) {
-        file.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number, frame.value_or(0)));
+        file.fail("the file ends after {} frames: expected frame {} (from 0)", number, frame.value_or(0));
     }
     Pairs pairs(file, *found, columns, ids);
     for (const TextLine& row : found->rows) {

@@ -3,7 +3,6 @@
 #include "contact/near_pairs.hpp"
 #include "packing/bodies.hpp"
 #include "snap/backbone.hpp"
-#include "snap/soft_list.hpp"
 #include "verified/to_vertex.hpp"
 
 #include <isostat/certificate/certify.hpp>
@@ -32,16 +31,16 @@ crafted::Plateau plateau_of(const Packing& packing, double rounding) {
 
 } // namespace
 
-WantedList list_of_plateau(const Packing& packing, double rounding) {
+SoftList list_of_plateau(const Packing& packing, double rounding) {
     const auto widest = plateau_of(packing, rounding).widest;
     return !widest
                ? list_up_to(packing, rounding)
-               : WantedList{crafted::backbone_at(packing, widest->range.first),
-                            fmt::format("the backbone at thresholds from {:.6g} to {:.6g}, the widest range of plateau",
-                                        widest->range.first, widest->range.last)};
+               : SoftList{crafted::backbone_at(packing, widest->range.first),
+                          fmt::format("the backbone at thresholds from {:.6g} to {:.6g}, the widest range of plateau",
+                                      widest->range.first, widest->range.last)};
 }
 
-Result<WantedList> list_below(const Packing& packing, std::optional<double> threshold, double rounding) {
+Result<SoftList> list_below(const Packing& packing, std::optional<double> threshold, double rounding) {
     const double largest = threshold.value_or(nearly_touching * packing.min_radius());
     if (threshold) {
         const crafted::PlateauStep step = crafted::plateau(packing, {largest}, strain_of(packing.cell)).steps.front();
@@ -53,7 +52,7 @@ Result<WantedList> list_below(const Packing& packing, std::optional<double> thre
                             largest, step.backbone.dof_count, step.backbone.contact_count, step.backbone.hyperstaticity,
                             step.backbone.mechanisms)};
         }
-        return WantedList{crafted::backbone_at(packing, largest), fmt::format("gaps up to {}", largest)};
+        return SoftList{crafted::backbone_at(packing, largest), fmt::format("gaps up to {}", largest)};
     }
     crafted::Plateau plateau = plateau_of(packing, rounding);
     std::erase_if(plateau.ranges, [](const crafted::PlateauRange& range) { return !range.told; });
@@ -63,10 +62,9 @@ Result<WantedList> list_below(const Packing& packing, std::optional<double> thre
                                    "counts",
                                    largest)};
     }
-    const auto range =
-        *std::max_element(plateau.ranges.begin(), plateau.ranges.end(),
-                          [&](const auto& x, const auto& y) { return plateau.width(x) < plateau.width(y); });
-    return WantedList{
+    const auto range = *std::ranges::max_element(
+        plateau.ranges, [&](const auto& x, const auto& y) { return plateau.width(x) < plateau.width(y); });
+    return SoftList{
         crafted::backbone_at(packing, range.first),
         fmt::format("isostatic backbone at every threshold from {:.6g} to {:.6g}, proved", range.first, range.last)};
 }
@@ -118,11 +116,11 @@ Result<NearestVertex> vertex_of_list(SoftState soft, const std::string& words, s
     return out;
 }
 
-WantedList list_up_to(const Packing& packing, double threshold) {
+SoftList list_up_to(const Packing& packing, double threshold) {
     const double reach = std::nextafter(std::max(threshold, 0.0), HUGE_VAL);
-    WantedList out{isostat::near_contacts(packing, reach, reach), fmt::format("gaps up to {:.6g}", threshold)};
+    SoftList out{isostat::near_contacts(packing, reach, reach), fmt::format("gaps up to {:.6g}", threshold)};
     std::erase_if(out.contacts, [&](const Contact& c) { return !(gap(packing, c) <= threshold); });
-    std::sort(out.contacts.begin(), out.contacts.end());
+    std::ranges::sort(out.contacts);
     return out;
 }
 

@@ -2,6 +2,8 @@
 /// \file
 /// The equilibrium of rigid grains next to a packing of another program: what `import` writes.
 
+#include "snap/soft_list.hpp"
+
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/snap/snap.hpp>
 
@@ -12,18 +14,12 @@
 
 namespace isostat::compare {
 
-/// The contacts that a vertex must have, and their origin in words.
-struct WantedList {
-    std::vector<Contact> contacts;
-    std::string words;
-};
-
 /// The contacts of the widest range of thresholds in which the backbone is proved isostatic; or the contacts at
 /// `threshold`. \p rounding: bound for gaps.
-Result<WantedList> list_below(const Packing& packing, std::optional<double> threshold, double rounding);
+Result<SoftList> list_below(const Packing& packing, std::optional<double> threshold, double rounding);
 
 /// The backbone of the widest range of thresholds, for any h and k; without a range, the gaps up to `rounding`.
-WantedList list_of_plateau(const Packing& packing, double rounding);
+SoftList list_of_plateau(const Packing& packing, double rounding);
 
 /// A vertex with what is proved of it, and the contacts that carry a force, in words.
 struct NearestVertex {
@@ -41,7 +37,7 @@ Result<NearestVertex> vertex_downhill(const SoftState& soft, std::uint64_t seed)
 Result<NearestVertex> vertex_of_list(SoftState soft, const std::string& words, std::uint64_t seed);
 
 /// The pairs of grains and walls with a gap of at most `threshold` at the coordinates of the file, sorted.
-WantedList list_up_to(const Packing& packing, double threshold);
+SoftList list_up_to(const Packing& packing, double threshold);
 
 /// The state of a packing of spheres or of clumps with the contacts of `soft` and the bars, at their vertex where it is
 /// determined and near, else at the coordinates of the file; and what is proved of it. Infinitesimal loads give a force

@@ -29,7 +29,7 @@ void press(const Snap& snap, State& state) {
             }
         }
     }
-    if (std::find(zero.begin(), zero.end(), 1) != zero.end()) {
+    if (std::ranges::find(zero, 1) != zero.end()) {
         balance(state.load.infinitesimal, state.packing.cell);
     }
 }
@@ -68,7 +68,7 @@ std::vector<Contact> carrying(const Snap& snap) {
             out.push_back(renumbered(snap.backbone.contacts[l], snap.disks));
         }
     }
-    std::sort(out.begin(), out.end());
+    std::ranges::sort(out);
     return out;
 }
 
@@ -88,7 +88,7 @@ Result<State> with_resting_rattlers(const Snap& snap, std::vector<double> infini
     for (const Contact& c : snap.backbone.contacts) {
         list.push_back(renumbered(c, snap.disks));
     }
-    std::sort(list.begin(), list.end());
+    std::ranges::sort(list);
     state.contacts = list;
     press(snap, state);
     for (const int i : snap.rattlers) {

@@ -79,7 +79,7 @@ GapBounds gap_bounds(const Packing& packing, const Contact& pair, double radius)
     if (!pair.image.is_here()) { // the separation has sums of coordinates, and each period m times
         const int periods = std::abs(pair.image.m[0]) + std::abs(pair.image.m[1]) + std::abs(pair.image.m[2]);
         off = diagonal(packing) * (2 + 2 * periods) * radius;
-        const auto [low, high] = std::minmax_element(packing.q.begin(), packing.q.end());
+        const auto [low, high] = std::ranges::minmax_element(packing.q);
         length += (2 + 2 * periods) * std::max(std::abs(*low), std::abs(*high));
     }
     const double error = (off + 16 * u * length) * (1 + 0x1p-49);
@@ -127,8 +127,8 @@ class Covering {
         // The distance to a corner; a centre was rounded at most 25 times.
         const double size = std::abs(centre[0]) + std::abs(centre[1]) + std::abs(centre[2]);
         const double way = diagonal(packing_) * half + 64 * roundoff::u * size;
-        if (std::any_of(pairs_.begin(), pairs_.end(),
-                        [&](const Contact& pair) { return gap_bounds(packing_, pair, radius_).upper + way < 0; })) {
+        if (std::ranges::any_of(
+                pairs_, [&](const Contact& pair) { return gap_bounds(packing_, pair, radius_).upper + way < 0; })) {
             return true;
         }
         const double next = half / 2;

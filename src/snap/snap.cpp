@@ -30,7 +30,7 @@ void take_backbone(const SoftState& soft, Snap& out) {
     std::vector<int> number(soft.packing.radius.size(), -1);
     out.rattlers = untouched(soft.packing.disk_count(), soft.contacts);
     for (int i = 0; i < soft.packing.disk_count(); ++i) {
-        if (!std::binary_search(out.rattlers.begin(), out.rattlers.end(), i)) {
+        if (!std::ranges::binary_search(out.rattlers, i)) {
             number[static_cast<std::size_t>(i)] = static_cast<int>(out.disks.size());
             out.disks.push_back(i);
         }
@@ -126,6 +126,14 @@ void judge_room(Snap& out) {
     }
 }
 
+/// The contacts without structural zeros, or all contacts when the zeros are not known.
+std::vector<Contact> without_zeros(const State& state, const std::vector<unsigned char>& zero) {
+    const bool known = zero.size() == state.contacts.size();
+    std::vector<Contact> out = known ? unmarked(state.contacts, zero) : state.contacts;
+    std::ranges::sort(out);
+    return out;
+}
+
 } // namespace
 
 Packing of_disks(const Packing& packing, const std::vector<int>& disks) {
@@ -140,7 +148,7 @@ Packing of_disks(const Packing& packing, const std::vector<int>& disks) {
         out.q.insert(out.q.end(), x, x + packing.axes());
     }
     out.q.insert(out.q.end(), packing.q.begin() + static_cast<std::ptrdiff_t>(packing.length_at(0)), packing.q.end());
-    const auto pin = std::find(disks.begin(), disks.end(), packing.cell.pin);
+    const auto pin = std::ranges::find(disks, packing.cell.pin);
     out.cell.pin = pin == disks.end() ? 0 : static_cast<int>(pin - disks.begin());
     return out;
 }
@@ -223,18 +231,6 @@ Snap snap(const SoftState& soft) {
     }
     return out;
 }
-
-namespace {
-
-/// The contacts without structural zeros, or all contacts when the zeros are not known.
-std::vector<Contact> without_zeros(const State& state, const std::vector<unsigned char>& zero) {
-    const bool known = zero.size() == state.contacts.size();
-    std::vector<Contact> out = known ? unmarked(state.contacts, zero) : state.contacts;
-    std::sort(out.begin(), out.end());
-    return out;
-}
-
-} // namespace
 
 std::vector<Contact> carrying(const State& state, const Certification& truth) {
     return without_zeros(state, truth.structural_zero);

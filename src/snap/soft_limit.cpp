@@ -26,7 +26,7 @@ class SoftGrains {
     /// Computes forces and their slopes at the current positions under the loaded stress `sigma`. False: the matrix is
     /// singular, or the grains are so soft that a step left the range of double.
     bool solve(double sigma) {
-        if (!std::all_of(packing.q.begin(), packing.q.end(), [](double x) { return std::isfinite(x); })) {
+        if (!std::ranges::all_of(packing.q, [](double x) { return std::isfinite(x); })) {
             return false;
         }
         const auto structure = IsostaticStructure::prove(packing, contacts_);
@@ -71,7 +71,7 @@ std::optional<Vanishing> first_ahead(const SoftGrains& grains, double sigma, dou
     for (std::size_t l = 0; l < force.size(); ++l) {
         force[l] += (middle - sigma) * grains.slopes[l];
     }
-    if (!std::all_of(force.begin(), force.end(), [](double f) { return f > 0; })) {
+    if (!std::ranges::all_of(force, [](double f) { return f > 0; })) {
         return std::nullopt;
     }
     return first_to_vanish(

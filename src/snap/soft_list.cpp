@@ -111,10 +111,10 @@ void check_nearness(const std::string& file, const Packing& packing) {
         }
     }
     if (deepest < -near) {
-        refuse(file, fmt::format(
-                         "two grains overlap by {:.3g}: expected at most {:.3g}, {} of the smallest radius (members of "
-                         "one rigid body may: import --bodies COLUMN)",
-                         -deepest, near, nearly_touching));
+        refuse(file,
+               "two grains overlap by {:.3g}: expected at most {:.3g}, {} of the smallest radius (members of one rigid "
+               "body may: import --bodies COLUMN)",
+               -deepest, near, nearly_touching);
     }
 }
 
@@ -146,15 +146,17 @@ std::vector<double> normal_parts(const Packing& packing, const std::vector<Vecto
         attract += part < 0 ? 1 : 0;
     }
     if (attract > 0) {
-        refuse(file, fmt::format("of {} vectors {} pull where the others push: expected forces on the first grain of "
-                                 "each row, or on the second one of each",
-                                 out.size(), attract));
+        refuse(file,
+               "of {} vectors {} pull where the others push: expected forces on the first grain of each row, or on the "
+               "second one of each",
+               out.size(), attract);
     }
     const double mean = out.empty() ? 1 : std::abs(sum) / static_cast<double>(out.size());
     if (!(slip <= force_agreement * mean)) {
-        refuse(file, fmt::format("the tangential force of {} is {:.3g} of the mean force: expected grains without "
-                                 "friction (are the columns the components, in their order?)",
-                                 to_string(rows[where].contact, packing.dimension), slip / mean));
+        refuse(file,
+               "the tangential force of {} is {:.3g} of the mean force: expected grains without friction (are the "
+               "columns the components, in their order?)",
+               to_string(rows[where].contact, packing.dimension), slip / mean);
     }
     words = fmt::format(", normal parts (tangential ones: at most {:.1e} of the mean force)", slip / mean);
     return out;
@@ -185,10 +187,10 @@ SoftList list_by_forces(const std::string& file, const Packing& packing, const s
         columns.force.size() > 1 ? normal_parts(packing, vectors, contacts, parts) : std::vector<double>();
     for (std::size_t k = 0; k < rows.size(); ++k) {
         if (!forces.emplace(vectors[k].contact, numbers.empty() ? rows[k].force[0] : numbers[k]).second) {
-            refuse(fmt::format("{}:{}", contacts, rows[k].line),
-                   fmt::format("{}s {} and {} come twice{}: expected each pair once", grain_word(packing.dimension),
-                               ids[static_cast<std::size_t>(rows[k].i)], ids[static_cast<std::size_t>(rows[k].j)],
-                               packing.cell.any() ? ", and no other image of them overlaps" : ""));
+            refuse(fmt::format("{}:{}", contacts, rows[k].line), "{}s {} and {} come twice{}: expected each pair once",
+                   grain_word(packing.dimension), ids[static_cast<std::size_t>(rows[k].i)],
+                   ids[static_cast<std::size_t>(rows[k].j)],
+                   packing.cell.any() ? ", and no other image of them overlaps" : "");
         }
     }
     const std::size_t pairs = forces.size();
@@ -238,7 +240,7 @@ PairImages::PairImages(const Packing& packing) {
         }
     }
     for (auto& [pair, images] : images_) {
-        std::sort(images.by_gap.begin(), images.by_gap.end());
+        std::ranges::sort(images.by_gap);
     }
 }
 

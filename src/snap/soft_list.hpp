@@ -31,9 +31,9 @@ void check_nearness(const std::string& file, const Packing& packing);
 
 /// A list of contacts, and its origin in words.
 struct SoftList {
-    std::vector<Contact> contacts; ///< without rattlers, sorted
-    std::vector<double> forces;    ///< forces of the contacts in the file; NaN: not given. Empty: none given
+    std::vector<Contact> contacts; ///< sorted
     std::string words;
+    std::vector<double> forces{}; ///< of the contacts in the file; NaN: not given. Empty: none given
 };
 
 /// A force given as a vector, on one grain of a contact from the other.
@@ -47,7 +47,7 @@ std::vector<double> normal_parts(const Packing& packing, const std::vector<Vecto
                                  std::string& words);
 
 /// The pairs with a force in a LAMMPS dump of style local or a table (`read_local_dump`), and the walls that a disk
-/// overlaps. \p ids: of the disks.
+/// overlaps, without rattlers. \p ids: of the disks.
 SoftList list_by_forces(const std::string& file, const Packing& packing, const std::vector<long>& ids,
                         std::optional<long> frame, const std::string& contacts, const PairColumns& columns);
 
@@ -56,7 +56,7 @@ std::vector<Contact> near_contacts(const Packing& packing);
 /// The overlapping pairs of `near_contacts`.
 std::vector<Contact> overlaps_of(const Packing& packing);
 
-/// The overlaps as a list.
+/// The overlaps as a list, without rattlers.
 SoftList list_by_overlaps(const Packing& packing);
 
 /// Pairs of grains by number, as other programs list them, and the images that these pairs stand for.

@@ -1,8 +1,7 @@
+#include "core/refuse.hpp"
 #include "packing/words.hpp"
 #include "snap/backbone.hpp"
 #include "snap/soft_list.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -46,20 +45,19 @@ double ContactLaw::rounding(const Packing& packing, const Contact& contact, doub
 
 SoftForces soft_grains(const StateFile& file, const std::string& source) {
     State state = file.state;
-    const bool fixed =
-        std::any_of(state.packing.fixed.begin(), state.packing.fixed.end(), [](auto f) { return f != 0; });
+    const bool fixed = std::ranges::any_of(state.packing.fixed, [](auto f) { return f != 0; });
     if (!gives_way(state.packing) || fixed || !state.load.disk_force.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: expected a fixed lower and a movable upper wall along each axis that is not "
-                                "periodic, no fixed {} and no force on a {}",
-                                source, grain_word(state.packing.dimension), grain_word(state.packing.dimension)));
+        refuse(source,
+               "expected a fixed lower and a movable upper wall along each axis that is not periodic, no fixed {} and "
+               "no force on a {}",
+               grain_word(state.packing.dimension), grain_word(state.packing.dimension));
     }
     SoftForces out;
     std::map<Contact, double> forces;
     for (std::size_t l = 0; l < file.forces.size(); ++l) {
         forces.emplace(state.contacts[l], file.forces[l]);
     }
-    std::sort(state.contacts.begin(), state.contacts.end());
+    std::ranges::sort(state.contacts);
     state.contacts = able_to_carry(state.packing, std::move(state.contacts));
     for (std::size_t l = 0; l < state.contacts.size() && !forces.empty(); ++l) {
         out.forces.push_back(forces.at(state.contacts[l]));

@@ -70,7 +70,7 @@ class Surplus {
             }
             out.push_back(row);
         }
-        std::sort(out.begin(), out.end());
+        std::ranges::sort(out);
         return out;
     }
 
@@ -95,7 +95,7 @@ std::optional<Balanced> balanced(const Surplus& surplus, const Packing& packing,
     std::vector<Eigen::Index> places;
     Vector rest = load, size = load.cwiseAbs(), terms = Vector::Ones(load.size());
     for (Eigen::Index l = 0; l < f.size(); ++l) {
-        if (!std::binary_search(given.begin(), given.end(), l)) {
+        if (!std::ranges::binary_search(given, l)) {
             others.push_back(contacts[static_cast<std::size_t>(l)]);
             places.push_back(l);
             continue;
@@ -154,7 +154,7 @@ SurplusSplit split_surplus(const SoftState& soft, const std::vector<double>& for
                            const Exchanged* downhill) {
     SurplusSplit out;
     if (!(mean > 0) || forces.size() != soft.contacts.size() ||
-        !std::all_of(forces.begin(), forces.end(), [](double f) { return std::isfinite(f); })) {
+        !std::ranges::all_of(forces, [](double f) { return std::isfinite(f); })) {
         return out;
     }
     Packing packing = of_disks(soft.packing, snap.disks);

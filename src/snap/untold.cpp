@@ -36,7 +36,7 @@ class Copies {
         factors_.emplace(structure.value());
         forces = solved(backbone_.packing, *factors_);
         std::vector<Contact> listed = backbone_.contacts;
-        std::sort(listed.begin(), listed.end());
+        std::ranges::sort(listed);
         pairs = without(find_candidates(backbone_.packing, candidate_fraction).contacts, listed);
         for (const Contact& pair : pairs) {
             gaps.push_back(gap(backbone_.packing, pair));
@@ -90,8 +90,8 @@ class Copies {
 /// Adds the rattlers that would be held if the pairs with gaps as small as the possible change were contacts.
 void add_rattlers(const State& state, const std::vector<int>& disks, double change, Untold& out) {
     std::vector<Contact> listed = state.contacts;
-    std::sort(listed.begin(), listed.end());
-    const auto carries = [&](int i) { return std::binary_search(disks.begin(), disks.end(), i); };
+    std::ranges::sort(listed);
+    const auto carries = [&](int i) { return std::ranges::binary_search(disks, i); };
     std::vector<Contact> near;
     for (const Contact& c : without(find_candidates(state.packing, candidate_fraction).contacts, listed)) {
         const bool rattler = !carries(c.i) || (c.of_disks() && !carries(c.j));
@@ -100,10 +100,10 @@ void add_rattlers(const State& state, const std::vector<int>& disks, double chan
         }
     }
     listed.insert(listed.end(), near.begin(), near.end());
-    std::sort(listed.begin(), listed.end());
+    std::ranges::sort(listed);
     const std::vector<Contact> held = able_to_carry(state.packing, listed);
     for (const Contact& c : near) {
-        if (std::binary_search(held.begin(), held.end(), c)) {
+        if (std::ranges::binary_search(held, c)) {
             out.gaps.push_back(c);
             out.rattlers = true;
         }
@@ -123,8 +123,7 @@ double imported_rounding(const State& state) {
     const auto& value = provenance["rounding"];
     const double rounding = value.is_number() ? value.get<double>() : -1;
     if (!(rounding >= 0 && std::isfinite(rounding))) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("provenance.rounding is {}: expected a length, 0 or more", value.dump()));
+        refuse(ErrorKind::bad_input, "provenance.rounding is {}: expected a length, 0 or more", value.dump());
     }
     return rounding;
 }
@@ -157,7 +156,7 @@ Untold untold_by(double rounding, const State& state, const Certification& truth
         disks.push_back(carrying[l].i);
         disks.push_back(carrying[l].of_disks() ? carrying[l].j : carrying[l].i);
     }
-    std::sort(disks.begin(), disks.end());
+    std::ranges::sort(disks);
     disks.erase(std::unique(disks.begin(), disks.end()), disks.end());
     Copies copies(state, carrying);
     std::mt19937_64 random(1);

@@ -66,9 +66,7 @@ struct ZeroHolds {
     /// infinitesimal loads may be different from 0.
     std::vector<ContactId> others;
 
-    [[nodiscard]] bool has(ContactId l) const {
-        return fresh == l || std::find(others.begin(), others.end(), l) != others.end();
-    }
+    [[nodiscard]] bool has(ContactId l) const { return fresh == l || std::ranges::find(others, l) != others.end(); }
 };
 
 /// Applies the rule at the loaded stress `sigma`. The two ends of a strut that a power turn

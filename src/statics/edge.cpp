@@ -15,7 +15,7 @@ struct Edge {
 
     [[nodiscard]] bool has(Contact wall, int sphere) const {
         wall.i = sphere;
-        return std::find(contacts.begin(), contacts.end(), wall) != contacts.end();
+        return std::ranges::find(contacts, wall) != contacts.end();
     }
     /// The contact acts on the sphere equally towards both walls.
     [[nodiscard]] bool presses_alike(const Contact& c, int dimension) const {
@@ -49,7 +49,7 @@ bool moves_without_load(const Statics& statics, int sphere) {
         return coordinate >= first && coordinate < first + dofs.layout().axes();
     };
     const bool moves = dofs.dof_of(first) >= 0 || dofs.dof_of(first + 1) >= 0; // the pinned sphere moves along walls
-    return moves && std::none_of(rows.begin(), rows.end(), of_sphere);
+    return moves && std::ranges::none_of(rows, of_sphere);
 }
 
 /// Two members of one size, which are a whole body, and their contacts with one grain.
@@ -69,8 +69,8 @@ struct Notch {
             const ContactId id(l);
             Contact mirror = c;
             mirror.i = j;
-            level = level || (is_wall(c) && c.i == i && c.j != axis &&
-                              std::find(contacts.begin(), contacts.end(), mirror) != contacts.end());
+            level = level ||
+                    (is_wall(c) && c.i == i && c.j != axis && std::ranges::find(contacts, mirror) != contacts.end());
             const bool along = is_wall(c) ? c.j == axis : c.kind != ContactKind::held || c.i % plane == axis;
             const bool first = is_member(c.kind == ContactKind::held ? c.i / plane : c.i);
             const bool second = c.of_disks() && is_member(c.j);
@@ -96,7 +96,7 @@ std::vector<EqualForce> equal_in_notch(const Statics& statics, ContactId of) {
                 radius[static_cast<std::size_t>(i)] != radius[static_cast<std::size_t>(j)]) {
                 continue;
             }
-            const auto found = std::find(contacts.begin(), contacts.end(), pair_of(j, k));
+            const auto found = std::ranges::find(contacts, pair_of(j, k));
             const ContactId mate(static_cast<std::size_t>(found - contacts.begin()));
             const Notch notch{statics, i, j, of, mate};
             if (found != contacts.end() && (notch.lies_level(0) || notch.lies_level(1))) {

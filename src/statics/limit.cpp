@@ -284,11 +284,10 @@ std::optional<Failure> choose(Statics& statics, LimitContest& contest, Minimum& 
     }
     const auto& contacts = statics.structure().contacts();
     const Result<Opening> by_loads = first_of_class(statics, members);
-    const ContactId chosen = by_loads.ok()
-                                 ? by_loads.value().contact
-                                 : *std::min_element(members.begin(), members.end(), [&](ContactId a, ContactId b) {
-                                       return contacts[a.index()] < contacts[b.index()];
-                                   });
+    const ContactId chosen =
+        by_loads.ok() ? by_loads.value().contact : *std::ranges::min_element(members, [&](ContactId a, ContactId b) {
+            return contacts[a.index()] < contacts[b.index()];
+        });
     const auto record =
         recorded_choice(minimum, found.value(), chosen.index(), by_loads.ok() ? TieChoice::loads : TieChoice::names);
     minimum.settled.insert(minimum.settled.end(), record.begin(), record.end());

@@ -134,9 +134,8 @@ void Stage::leave_out_what_cannot_open() {
     if (negative_.empty() || choice_.rule != OpeningRule::most_negative) {
         return;
     }
-    const auto smallest =
-        std::min_element(negative_.begin(), negative_.end(),
-                         [](const Contender& a, const Contender& b) { return a.force.value < b.force.value; });
+    const auto smallest = std::ranges::min_element(
+        negative_, [](const Contender& a, const Contender& b) { return a.force.value < b.force.value; });
     const Enclosure least = smallest->force;
     std::erase_if(doubtful_, [&](const Contender& d) { return (d.force - least).positive(); });
 }

@@ -38,7 +38,7 @@ class OpeningContest final : public Contest {
         const Contender& one = contenders_[best];
         const Contender& other = contenders_[rival];
         const auto equal =
-            std::find_if(equal_.begin(), equal_.end(), [&](const EqualForce& e) { return e.contact == other.contact; });
+            std::ranges::find_if(equal_, [&](const EqualForce& e) { return e.contact == other.contact; });
         if (equal != equal_.end()) {
             return by_loads(equal->excess, other);
         }
@@ -117,7 +117,7 @@ std::optional<std::size_t> rule_place(OpeningRule rule, std::size_t count, std::
 
 /// Ordered by name, so that the choice does not depend on the order of the contact list.
 Opening pick_by_name(const Statics& statics, std::vector<Contender>& contenders, std::size_t place) {
-    std::sort(contenders.begin(), contenders.end(), [&](const Contender& a, const Contender& b) {
+    std::ranges::sort(contenders, [&](const Contender& a, const Contender& b) {
         const auto& contacts = statics.structure().contacts();
         return contacts[a.contact.index()] < contacts[b.contact.index()];
     });
@@ -145,8 +145,7 @@ std::optional<Failure> choose(Statics& statics, const std::vector<Contender>& co
     const auto infinitesimal = [&](ContactId l) { return statics.infinitesimal_expression(l); };
     const Result<Opening> by_loads = pick(statics, again, Choice{rule, 0, infinitesimal, nullptr, nullptr});
     const ContactId first = by_loads.ok() ? by_loads.value().contact : pick_by_name(statics, again, 0).contact;
-    const auto chosen =
-        std::find_if(contenders.begin(), contenders.end(), [first](const Contender& c) { return c.contact == first; });
+    const auto chosen = std::ranges::find_if(contenders, [first](const Contender& c) { return c.contact == first; });
     const auto index = static_cast<std::size_t>(chosen - contenders.begin());
     const auto record =
         recorded_choice(minimum, members.value(), index, by_loads.ok() ? TieChoice::loads : TieChoice::names);
@@ -162,9 +161,8 @@ Result<Opening> pick(Statics& statics, std::vector<Contender> contenders, const 
         return pick_by_name(statics, contenders, *place);
     }
     OpeningContest contest(statics, contenders, choice);
-    const auto guess =
-        std::min_element(contenders.begin(), contenders.end(),
-                         [](const Contender& a, const Contender& b) { return a.key.value < b.key.value; });
+    const auto guess = std::ranges::min_element(
+        contenders, [](const Contender& a, const Contender& b) { return a.key.value < b.key.value; });
     auto found = proved_minimum(contest, static_cast<std::size_t>(guess - contenders.begin()),
                                 "the comparisons of the opening rule contradict each other");
     if (!found.ok()) {

@@ -124,7 +124,7 @@ Result<std::vector<std::size_t>> choosable(Contest& contest, const Minimum& mini
 std::vector<TieDecision> recorded_choice(const Minimum& minimum, const std::vector<std::size_t>& members,
                                          std::size_t chosen, TieChoice how) {
     const auto tie = [&](std::size_t member) -> const TieDecision& { // of the smallest with this one
-        return *std::find_if(minimum.open.begin(), minimum.open.end(), [member](const Minimum::Tied& one) {
+        return *std::ranges::find_if(minimum.open, [member](const Minimum::Tied& one) {
                     return one.index == member;
                 })->terms;
     };

@@ -34,8 +34,8 @@ Statics::Statics(const Packing& packing, const Load& load, const IsostaticStruct
     const DofMap& dofs = structure.dofs();
     // Under true stresses the force on a wall depends on the lengths of the other axes.
     const bool follows = load.kind == LoadKind::true_stress;
-    const double stress = std::abs(*std::max_element(load.stress.begin(), load.stress.end(),
-                                                     [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    const double stress =
+        std::abs(*std::ranges::max_element(load.stress, [](double a, double b) { return std::abs(a) < std::abs(b); }));
     const auto known = [near = hints.near](Part part) {
         const std::span<const double> x = near != nullptr ? near->ladder_.known(part) : std::span<const double>();
         return std::vector<double>(x.begin(), x.end());

@@ -2,7 +2,6 @@
 #include "cli/program.hpp"
 #include "report/page.hpp"
 #include "report/run_walk.hpp"
-#include "report/sphere_page.hpp"
 #include "report/statistics.hpp"
 #include "support/clumps.hpp"
 #include "support/test.hpp"

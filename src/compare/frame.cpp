@@ -104,18 +104,17 @@ JudgedFrame judge(const Series& series, const Frame& frame, const Reading& readi
         r.reason = reading.other_load;
         return out;
     }
-    if (!(reading.result.unbalanced <= series.rest)) {
+    if (!(r.unbalanced <= series.rest)) {
         r.status = reading.blurred ? FrameStatus::undecided : FrameStatus::moving;
         r.reason = fmt::format(
-            "a force of {:.3g} mean forces is left: expected at most {:.3g} at rest{}{}{}{}", reading.result.unbalanced,
-            series.rest, reading.blurred ? "; so much is within the digits of the files, overlaps have no more" : "",
+            "a force of {:.3g} mean forces is left: expected at most {:.3g} at rest{}{}{}{}", r.unbalanced, series.rest,
+            reading.blurred ? "; so much is within the digits of the files, overlaps have no more" : "",
             reading.dashpots.empty() ? "" : "; ", reading.dashpots, reading.few);
         return out;
     }
     if (!reading.dashpots.empty()) {
         r.status = FrameStatus::moving;
-        r.reason =
-            fmt::format("forces differ from the law by {:.3g} mean forces; {}", reading.result.law, reading.dashpots);
+        r.reason = fmt::format("forces differ from the law by {:.3g} mean forces; {}", r.law, reading.dashpots);
         return out;
     }
     const Snap snapped = snap(soft);

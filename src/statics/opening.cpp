@@ -67,6 +67,10 @@ class Stage {
         return Contender{l, competes, competes, competes.margin(), f.value};
     }
 
+    /// \pre some force is negative
+    [[nodiscard]] const Contender& most_negative() const {
+        return *std::ranges::min_element(negative_, {}, [](const Contender& c) { return c.force.value; });
+    }
     [[nodiscard]] bool may_tie() const;
     void find_zero_holds();
     void sort_by_sign();
@@ -134,9 +138,7 @@ void Stage::leave_out_what_cannot_open() {
     if (negative_.empty() || choice_.rule != OpeningRule::most_negative) {
         return;
     }
-    const auto smallest = std::ranges::min_element(
-        negative_, [](const Contender& a, const Contender& b) { return a.force.value < b.force.value; });
-    const Enclosure least = smallest->force;
+    const Enclosure least = most_negative().force;
     std::erase_if(doubtful_, [&](const Contender& d) { return (d.force - least).positive(); });
 }
 
@@ -223,11 +225,9 @@ bool Stage::may_tie() const {
     if (zero_.fresh.valid() || !finite_ || choice_.rule != OpeningRule::most_negative) {
         return true;
     }
-    const auto least = std::min_element(negative_.begin(), negative_.end(), [](const Contender& a, const Contender& b) {
-        return a.force.value < b.force.value;
-    });
-    return std::any_of(negative_.begin(), negative_.end(), [&](const Contender& c) {
-        return c.contact != least->contact && !(c.force - least->force).decided();
+    const Contender& least = most_negative();
+    return std::ranges::any_of(negative_, [&](const Contender& c) {
+        return c.contact != least.contact && !(c.force - least.force).decided();
     });
 }
 

@@ -30,9 +30,9 @@ double uncertainty(const VertexEnclosure& vertex) {
 class Certifier {
   public:
     Certifier(const ArcVertex& start, ContactId opened, int direction, const ArcVertex& end, const PowerLoad& power,
-              CandidateList candidates, const ArcCertificateOptions& options)
+              CandidateList candidates, InverseBoundCache& cache, const ArcCertificateOptions& options)
         : start_(start), end_(end), slot_(opened.index()), direction_(direction), candidates_(std::move(candidates)),
-          options_(options), load_(power) {}
+          cache_(cache), options_(options), load_(power) {}
 
     /// First tries the bounds of the vertices; when the rows of the opened and of the closed contact are unsuitable
     /// (they change slowly compared with other coordinates), uses the fastest coordinates instead.
@@ -91,7 +91,7 @@ class Certifier {
     std::vector<Contact> active_;
     ArcCertificateOptions options_;
     std::unique_ptr<MovingPart> part_;
-    InverseBoundCache cache_; ///< for one attempt
+    InverseBoundCache& cache_;
     Front front_;
     std::unique_ptr<ArcCentre> end_centre_;
     std::unique_ptr<Piece> last_; ///< the piece at `end_centre_`
@@ -224,7 +224,6 @@ ArcCertificate Certifier::attempt(bool fresh_ends) {
     active_.clear();
     PowerWatch power(load_);
     power_ = &power;
-    cache_ = {};
     hopeless_ = !begin();
     if (!hopeless_ && place_ends() && follow()) {
         certificate_.verdict = Verdict::proved;
@@ -381,9 +380,9 @@ bool Certifier::follow() {
 
 ArcCertificate certify_arc(const ArcVertex& start, ContactId opened, int direction, const ArcVertex& end,
                            const PowerLoad& power, const CandidateList& candidates,
-                           const ArcCertificateOptions& options) {
+                           InverseBoundCache& cache, const ArcCertificateOptions& options) {
     require_floating_point();
-    return Certifier(start, opened, direction, end, power, candidates, options).run();
+    return Certifier(start, opened, direction, end, power, candidates, cache, options).run();
 }
 
 } // namespace isostat

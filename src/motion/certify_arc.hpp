@@ -26,7 +26,8 @@ struct ArcCertificateOptions {
 
 /// Certifies the arc that opens `opened` at `start` (`direction` as for `follow_arc`) and ends at `end`, whose contacts
 /// are those of `start` with `opened` replaced in its place. The proof does not depend on how the arc was found.
-/// `candidates` is used while it is complete and made again when the motion leaves its reach.
+/// `candidates` is used while it is complete and made again when the motion leaves its reach; `cache` is that of the
+/// arc before, or empty.
 ///
 /// Method: pieces of the curve as polynomials (derivatives in the free parameter, one triangular solve
 /// each), a tube around each by Newton-Kantorovich with sigma_min(centre) - |change of the derivative|,
@@ -36,6 +37,6 @@ struct ArcCertificateOptions {
 /// inverse each. Arcs of rattlers are certified in the few degrees of freedom of the rattlers.
 ArcCertificate certify_arc(const ArcVertex& start, ContactId opened, int direction, const ArcVertex& end,
                            const PowerLoad& power, const CandidateList& candidates,
-                           const ArcCertificateOptions& options = {});
+                           InverseBoundCache& cache, const ArcCertificateOptions& options = {});
 
 } // namespace isostat

@@ -140,6 +140,7 @@ void Prover::start_at(const Packing& packing, const std::shared_ptr<const Regula
         candidates_ = find_candidates(packing, candidate_fraction, near ? near : candidates_.triangulation);
     }
     bounds_.forget();
+    certified_bounds_.forget();
 }
 
 Result<std::shared_ptr<Vertex>> Prover::vertex(Packing packing, std::vector<Contact> contacts, const LimitLoad& at) {
@@ -424,7 +425,7 @@ void Prover::certify(ArcProof& proof, const Vertex& from, const Opening& opening
     };
     proof.record.certificate =
         certify_arc(vertex(from, *first), opening.contact, opening.direction, vertex(to, *factors_there_),
-                    power_load(load, opening, proof.record.kind), candidates_);
+                    power_load(load, opening, proof.record.kind), candidates_, certified_bounds_);
     proof.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 

@@ -122,6 +122,7 @@ class Prover {
     CandidateList candidates_;
     KeptCandidates kept_; ///< flags of `candidates_`
     InverseBoundCache bounds_;
+    InverseBoundCache certified_bounds_; ///< of the centres on certified arcs
     /// The end of the last certified arc, where the next one mostly starts, with new factors.
     std::shared_ptr<const Vertex> certified_end_;
     std::optional<Factorisation> factors_there_;

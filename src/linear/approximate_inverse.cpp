@@ -207,7 +207,7 @@ ApproximateInverse::ApproximateInverse(const sparse::Matrix<double>& matrix, std
     make_schedule(std::move(base));
 }
 
-ApproximateInverse ApproximateInverse::renewed(const sparse::Matrix<double>& matrix) const {
+ApproximateInverse ApproximateInverse::renewed(const sparse::Matrix<double>& matrix, Use use) const {
     if (!valid() || base_->column_order.size() != static_cast<std::size_t>(matrix.rows) ||
         base_->entries > base_->entries_then + base_->entries_then / 5) {
         return ApproximateInverse(matrix);
@@ -239,7 +239,11 @@ ApproximateInverse ApproximateInverse::renewed(const sparse::Matrix<double>& mat
         return ApproximateInverse(matrix); // a block has no pivot
     }
     ApproximateInverse inverse;
-    inverse.make_schedule(std::move(base));
+    if (use == Use::few_solves) {
+        inverse.base_ = std::move(base);
+    } else {
+        inverse.make_schedule(std::move(base));
+    }
     return inverse;
 }
 
@@ -351,6 +355,8 @@ void ApproximateInverse::velocities(std::span<double> rhs) const {
     }
     if (schedule_ != nullptr) {
         schedule_->solve_transposed(rhs);
+    } else if (base_->block_rows.empty()) {
+        klu_tsolve(base_->symbolic, base_->numeric, base_->matrix.rows, 1, rhs.data(), &common);
     } else {
         in_block(rhs, base_->block_columns, base_->block_rows, [&](std::vector<double>& x) {
             klu_tsolve(base_->symbolic, base_->numeric, static_cast<int>(x.size()), 1, x.data(), &common);
@@ -409,6 +415,8 @@ void ApproximateInverse::forces(std::span<double> rhs) const {
     klu_common common = base_->common;
     if (schedule_ != nullptr) {
         schedule_->solve(rhs);
+    } else if (base_->block_rows.empty()) {
+        klu_solve(base_->symbolic, base_->numeric, base_->matrix.rows, 1, rhs.data(), &common);
     } else {
         in_block(rhs, base_->block_rows, base_->block_columns, [&](std::vector<double>& x) {
             klu_solve(base_->symbolic, base_->numeric, static_cast<int>(x.size()), 1, x.data(), &common);

@@ -27,7 +27,8 @@ class ApproximateInverse {
     /// New factors, of a matrix with nearly the same columns in the same slots: the order of the columns is reused, and
     /// with it most of the analysis, until the fill has grown by a fifth. Exchanged columns come last, where they fill
     /// least. Cost: half of that of the constructor.
-    [[nodiscard]] ApproximateInverse renewed(const sparse::Matrix<double>& matrix) const;
+    enum class Use { many_solves, few_solves };
+    [[nodiscard]] ApproximateInverse renewed(const sparse::Matrix<double>& matrix, Use use = Use::many_solves) const;
 
     /// The operator of a block that moves independently: the square submatrix of the given
     /// rows (degrees of freedom) and columns (contacts), where no other column has an entry in

@@ -28,7 +28,7 @@ std::unique_ptr<ArcCentre> ArcCentre::near(const ArcVertex& vertex, std::size_t 
     }
     ApproximateInverse factors = vertex.factorisation.approximate()
                                      .exchanged(static_cast<int>(slot), exchange->matrix())
-                                     .renewed(exchange->matrix());
+                                     .renewed(exchange->matrix(), ApproximateInverse::Use::few_solves);
     const auto proved = bound_exchanged(*exchange, factors, cache);
     if (!proved) {
         return make(std::move(packing), std::move(list), cache);

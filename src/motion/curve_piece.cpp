@@ -97,12 +97,7 @@ void CurvePiece::bound_coefficients_of(std::size_t l) {
     const PerAxis<double> line = separation(centre().layout(), centre().q, c);
     const std::size_t axes = centre().axes();
     for (std::size_t k = 1; k <= 2 * order; ++k) {
-        RoundedSum sum;
-        for (std::size_t i = k > order ? k - order : 1; i <= std::min(order, k - 1); ++i) {
-            sum.add(d[i], d[k - i], axes);
-        }
-        sum.value *= 0.5;
-        sum.absolute *= 0.5;
+        RoundedSum sum = half_square(d, k, axes);
         if (k <= order) {
             sum.add(line, d[k], axes);
         }

@@ -151,13 +151,8 @@ void PowerWatch::add_contact(const CurvePiece& piece, const Contact& contact, do
         power.g[k - 1] += weight * weight * dot(d[k], d[k]);
     }
     for (std::size_t k = 2; k <= 2 * order; ++k) {
-        RoundedSum sum;
-        for (std::size_t p = k > order ? k - order : 1; p <= std::min(order, k - 1); ++p) {
-            for (std::size_t c = 0; c < axes; ++c) {
-                sum.add(d[p][c] * d[k - p][c]);
-            }
-        }
-        const double factor = 0.5 * static_cast<double>(k) * weight;
+        const RoundedSum sum = half_square(d, k, axes);
+        const double factor = static_cast<double>(k) * weight;
         power.c[k - 1] += factor * sum.value;
         power.c_open[k - 1] += (2 * static_cast<double>(k) + 24 + count) * u * std::abs(factor) * sum.absolute;
     }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace isostat {
 
@@ -48,5 +49,21 @@ struct RoundedSum {
         absolute += terms;
     }
 };
+
+/// Half the coefficient of s^k in |d_1 s + d_2 s^2 + ...|^2 (d_0 is not read): a product of two vectors is taken once.
+template <class Vector>
+inline RoundedSum half_square(const std::vector<Vector>& d, std::size_t k, std::size_t axes) {
+    const std::size_t order = d.size() - 1;
+    RoundedSum sum;
+    if (k % 2 == 0) {
+        sum.add(d[k / 2], d[k / 2], axes);
+        sum.value *= 0.5;
+        sum.absolute *= 0.5;
+    }
+    for (std::size_t i = k > order ? k - order : 1; 2 * i < k; ++i) {
+        sum.add(d[i], d[k - i], axes);
+    }
+    return sum;
+}
 
 } // namespace isostat

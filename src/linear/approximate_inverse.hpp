@@ -26,7 +26,8 @@ class ApproximateInverse {
 
     /// New factors, of a matrix with nearly the same columns in the same slots: the order of the columns is reused, and
     /// with it most of the analysis, until the fill has grown by a fifth. Exchanged columns come last, where they fill
-    /// least. Cost: half of that of the constructor.
+    /// least. Cost: half of that of the constructor; for a few solves these take twice as long, and their layout is
+    /// left out.
     enum class Use { many_solves, few_solves };
     [[nodiscard]] ApproximateInverse renewed(const sparse::Matrix<double>& matrix, Use use = Use::many_solves) const;
 

@@ -379,8 +379,8 @@ bool Certifier::follow() {
 } // namespace
 
 ArcCertificate certify_arc(const ArcVertex& start, ContactId opened, int direction, const ArcVertex& end,
-                           const PowerLoad& power, const CandidateList& candidates,
-                           InverseBoundCache& cache, const ArcCertificateOptions& options) {
+                           const PowerLoad& power, const CandidateList& candidates, InverseBoundCache& cache,
+                           const ArcCertificateOptions& options) {
     require_floating_point();
     return Certifier(start, opened, direction, end, power, candidates, cache, options).run();
 }

@@ -36,7 +36,7 @@ struct ArcCertificateOptions {
 /// the vertices; a longer arc needs fresh centres: one rank proof, one factorisation, one bound of the
 /// inverse each. Arcs of rattlers are certified in the few degrees of freedom of the rattlers.
 ArcCertificate certify_arc(const ArcVertex& start, ContactId opened, int direction, const ArcVertex& end,
-                           const PowerLoad& power, const CandidateList& candidates,
-                           InverseBoundCache& cache, const ArcCertificateOptions& options = {});
+                           const PowerLoad& power, const CandidateList& candidates, InverseBoundCache& cache,
+                           const ArcCertificateOptions& options = {});
 
 } // namespace isostat

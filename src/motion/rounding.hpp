@@ -51,8 +51,7 @@ struct RoundedSum {
 };
 
 /// Half the coefficient of s^k in |d_1 s + d_2 s^2 + ...|^2 (d_0 is not read): a product of two vectors is taken once.
-template <class Vector>
-inline RoundedSum half_square(const std::vector<Vector>& d, std::size_t k, std::size_t axes) {
+template <class Vector> inline RoundedSum half_square(const std::vector<Vector>& d, std::size_t k, std::size_t axes) {
     const std::size_t order = d.size() - 1;
     RoundedSum sum;
     if (k % 2 == 0) {

@@ -139,7 +139,6 @@ void Prover::start_at(const Packing& packing, const std::shared_ptr<const Regula
     if (candidates_.reference != packing.q || candidates_.contacts.empty()) { // otherwise the list would be the same
         candidates_ = find_candidates(packing, candidate_fraction, near ? near : candidates_.triangulation);
     }
-    bounds_.forget();
     certified_bounds_.forget();
 }
 
@@ -432,6 +431,7 @@ void Prover::certify(ArcProof& proof, const Vertex& from, const Opening& opening
 EndProof Prover::prove_end(Vertex::Beginning beginning, const LimitLoad& limit, const ZeroHolds& zero,
                            const std::vector<ContactId>& zeros, long step) {
     EndProof proof;
+    bounds_.forget();
     auto made = Vertex::make(std::move(beginning), limit.load, bounds_, ladder());
     if (!made.ok()) {
         proof.failure = made.failure();

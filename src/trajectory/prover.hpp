@@ -75,8 +75,10 @@ class Prover {
     /// A prover with the same options that shares no data with this one.
     [[nodiscard]] Prover another() const { return {*options_, *ties_}; }
 
-    /// Drops earlier data except a list of candidates that is complete at the packing, so that what follows does not
-    /// depend on the past and a resumed run goes the same way. `near`: see `find_candidates`.
+    /// Drops the data of earlier arcs except a list of candidates that is complete at the packing, so that what follows
+    /// does not depend on the past and a resumed run goes the same way: what the last proof without earlier data left
+    /// for the next bound of the inverse stays, because a resumed run has made that proof too. `near`: see
+    /// `find_candidates`.
     void start_at(const Packing& packing, const std::shared_ptr<const RegularTriangulation>& near = nullptr);
     /// The list for steering that starts from the vertices of this prover and runs on its thread.
     [[nodiscard]] CandidateList& candidates() { return candidates_; }

@@ -30,6 +30,13 @@ struct Known {
     [[nodiscard]] ArcVertex vertex() const { return {packing, structure, factorisation, inverse, enclosure}; }
 };
 
+/// Without what an arc before has left.
+ArcCertificate certify_alone(const ArcVertex& start, ContactId opened, int direction, const ArcVertex& end,
+                             const PowerLoad& power, const CandidateList& candidates) {
+    InverseBoundCache cache;
+    return certify_arc(start, opened, direction, end, power, candidates, cache);
+}
+
 constexpr double stop_angle = 2;
 
 /// Disk 3 stops it; disk 4, if any, is an obstacle.
@@ -47,7 +54,7 @@ struct CertifiedRolling : RollingDisk {
     /// Whatever a path follower may have said: from the start straight to `end`.
     [[nodiscard]] ArcCertificate certify(const Known& from, const Known& end) const {
         const CandidateList candidates = find_candidates(from.packing, candidate_fraction);
-        return certify_arc(from.vertex(), ContactId(1), +1, end.vertex(), PowerLoad{&load, false, false}, candidates);
+        return certify_alone(from.vertex(), ContactId(1), +1, end.vertex(), PowerLoad{&load, false, false}, candidates);
     }
     ArcCertificate certify() { return certify(start(), stopped()); }
 };
@@ -151,12 +158,12 @@ BOOST_AUTO_TEST_CASE(a_released_coordinate_is_followed_to_the_side_to_which_it_g
     const Known stop = rolling.stopped();
     const CandidateList candidates = find_candidates(turn.packing, candidate_fraction);
     const PowerLoad power{&rolling.load, false, false};
-    const auto down = certify_arc(turn.vertex(), ContactId(1), -1, stop.vertex(), power, candidates);
+    const auto down = certify_alone(turn.vertex(), ContactId(1), -1, stop.vertex(), power, candidates);
     BOOST_TEST(proved(down), down.reason); // x falls on the way to the stop
-    const auto up = certify_arc(turn.vertex(), ContactId(1), +1, stop.vertex(), power, candidates);
+    const auto up = certify_alone(turn.vertex(), ContactId(1), +1, stop.vertex(), power, candidates);
     BOOST_TEST(!proved(up)); // to disk 1 first
     const Known back = rolling.start();
-    const auto returned = certify_arc(turn.vertex(), ContactId(1), +1, back.vertex(), power, candidates);
+    const auto returned = certify_alone(turn.vertex(), ContactId(1), +1, back.vertex(), power, candidates);
     BOOST_TEST(proved(returned), returned.reason);
 }
 
@@ -173,9 +180,9 @@ BOOST_AUTO_TEST_CASE(a_coordinate_released_next_to_the_stop_goes_the_other_way) 
         const Known turn = rolling.at(top - before, Contact{ContactKind::held, 5, 0});
         const CandidateList candidates = find_candidates(turn.packing, candidate_fraction);
         const PowerLoad power{&rolling.load, false, false};
-        const auto down = certify_arc(turn.vertex(), ContactId(1), -1, stop.vertex(), power, candidates);
+        const auto down = certify_alone(turn.vertex(), ContactId(1), -1, stop.vertex(), power, candidates);
         BOOST_TEST(proved(down), down.reason);
-        const auto up = certify_arc(turn.vertex(), ContactId(1), +1, stop.vertex(), power, candidates);
+        const auto up = certify_alone(turn.vertex(), ContactId(1), +1, stop.vertex(), power, candidates);
         BOOST_TEST(!proved(up), "released " << before << " before the stop");
     }
 }
@@ -189,7 +196,7 @@ BOOST_AUTO_TEST_CASE(an_end_that_may_lie_behind_the_start_is_not_certified) {
         turn.enclosure.radius = end.enclosure.radius = 1e-6;
         const CandidateList candidates = find_candidates(turn.packing, candidate_fraction);
         const PowerLoad power{&rolling.load, false, false};
-        const auto down = certify_arc(turn.vertex(), ContactId(1), -1, end.vertex(), power, candidates);
+        const auto down = certify_alone(turn.vertex(), ContactId(1), -1, end.vertex(), power, candidates);
         BOOST_TEST(proved(down) == (ahead > 0), down.reason);
     }
 }
@@ -232,8 +239,8 @@ BOOST_AUTO_TEST_CASE(an_arc_in_a_channel_is_certified_unless_a_pair_of_images_me
         const State to = roll.end();
         const Known start = Known::of(from.packing, from.contacts);
         const Known end = Known::of(to.packing, to.contacts);
-        return certify_arc(start.vertex(), ContactId(roll.slot), +1, end.vertex(), PowerLoad{&from.load, false, false},
-                           find_candidates(start.packing, candidate_fraction));
+        return certify_alone(start.vertex(), ContactId(roll.slot), +1, end.vertex(),
+                             PowerLoad{&from.load, false, false}, find_candidates(start.packing, candidate_fraction));
     };
     for (const int shift : {0, 1, -2}) {
         for (const double clearance : {1e-2, 1e-5, 1e-8, 1e-10}) {

@@ -89,9 +89,9 @@ class Certifier {
     int direction_;
     CandidateList candidates_;
     std::vector<Contact> active_;
+    InverseBoundCache& cache_;
     ArcCertificateOptions options_;
     std::unique_ptr<MovingPart> part_;
-    InverseBoundCache& cache_;
     Front front_;
     std::unique_ptr<ArcCentre> end_centre_;
     std::unique_ptr<Piece> last_; ///< the piece at `end_centre_`

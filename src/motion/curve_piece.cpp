@@ -76,9 +76,8 @@ void CurvePiece::bound_coefficients_of(std::size_t l) {
     const std::size_t order = coefficients().size();
     double* size = &relative_[l * order];
     double* bound = &residual_[l * (2 * order + 1)];
-    std::vector<PerAxis<double>> d(order + 1);
+    const auto d = differences(l);
     for (std::size_t k = 1; k <= order; ++k) {
-        d[k] = separation_over(centre().layout(), coefficients()[k - 1], c);
         size[k - 1] = std::sqrt(dot(d[k], d[k])) * up;
     }
     if (c.kind == ContactKind::held) {
@@ -95,11 +94,10 @@ void CurvePiece::bound_coefficients_of(std::size_t l) {
         return;
     }
     const PerAxis<double> line = separation(centre().layout(), centre().q, c);
-    const std::size_t axes = centre().axes();
     for (std::size_t k = 1; k <= 2 * order; ++k) {
-        RoundedSum sum = half_square(d, k, axes);
+        RoundedSum sum = half_square(d, k);
         if (k <= order) {
-            sum.add(line, d[k], axes);
+            sum.add(line, d[k]);
         }
         bound[k] = (std::abs(sum.value) + (static_cast<double>(k) + 16) * u * sum.absolute) / length * (1 + 8 * u);
     }

@@ -17,16 +17,7 @@ namespace {
 using roundoff::infinity;
 /// Share of sigma_min that the change of the derivative over a piece may use. Affects cost only.
 constexpr double share = 0.7;
-constexpr int max_order = 14;
 constexpr double longest_reach = 0.2; ///< in units of the smallest radius
-
-std::vector<PerAxis<double>> separations(const Layout& layout, const std::vector<double>& x,
-                                         const std::vector<Contact>& contacts) {
-    std::vector<PerAxis<double>> list(contacts.size());
-    std::transform(contacts.begin(), contacts.end(), list.begin(),
-                   [&](const Contact& contact) { return separation_over(layout, x, contact); });
-    return list;
-}
 
 /// Rounds to the multiples of a power of two for which C2 holds (proofs/cells.md). Any coefficients are allowed, and
 /// the separations of these are exact.
@@ -78,16 +69,25 @@ bool CurvePolynomial::first_coefficient() {
     if (centre().cell.any()) {
         put_on_grid(a, centre().dimension);
     }
-    a_.push_back(std::move(a));
+    append(std::move(a));
     return true;
 }
 
+void CurvePolynomial::append(std::vector<double> coefficient) {
+    a_.push_back(std::move(coefficient));
+    for (std::size_t l = 0; l < curve_->contacts.size(); ++l) {
+        differences_[l * (max_order + 1) + a_.size()] =
+            separation_over(centre().layout(), a_.back(), curve_->contacts[l]);
+    }
+}
+
 /// Chooses the reach from the first coefficient over the contacts: how far the derivative of the equations may turn.
-void CurvePolynomial::choose_reach(const std::vector<PerAxis<double>>& first) {
-    std::vector<double> e(first.size(), 0.0);
-    for (std::size_t l = 0; l < first.size(); ++l) {
+void CurvePolynomial::choose_reach() {
+    std::vector<double> e(curve_->contacts.size(), 0.0);
+    for (std::size_t l = 0; l < e.size(); ++l) {
         if (curve_->bends(l)) {
-            e[l] = std::sqrt(dot(first[l], first[l])) / curve_->target[l];
+            const PerAxis<double>& first = differences(l)[1];
+            e[l] = std::sqrt(dot(first, first)) / curve_->target[l];
         }
     }
     const double turning = curve_->norm_of(e);
@@ -114,44 +114,40 @@ void CurvePolynomial::find_shift() {
 
 /// Coefficient k of |d|^2 = D^2 along p: 2 line . a_k + sum of a_i . a_(k-i) = 0 over every kept disk contact.
 void CurvePolynomial::expand() {
+    const std::size_t n = curve_->contacts.size();
+    differences_.assign(n * (max_order + 1), {});
     if (!first_coefficient()) {
         return;
     }
     if (centre().cell.any()) {
         find_shift();
     }
-    const auto& contacts = curve_->contacts;
-    const std::size_t n = contacts.size();
-    const auto line = separations(centre().layout(), centre().q, contacts);
-    std::vector<std::vector<PerAxis<double>>> d{separations(centre().layout(), a_[0], contacts)}; // of a_k, from k = 1
-    choose_reach(d[0]);
+    std::vector<double> length(n, 1.0);
+    for (std::size_t l = 0; l < n; ++l) {
+        if (curve_->bends(l)) {
+            const auto line = separation(centre().layout(), centre().q, curve_->contacts[l]);
+            length[l] = std::sqrt(dot(line, line));
+        }
+    }
+    choose_reach();
     const double negligible = 0x1p-60 * centre().min_radius();
     std::vector<double> rhs(n, 0.0);
     for (std::size_t k = 2; k <= max_order; ++k) {
         for (std::size_t l = 0; l < n; ++l) {
-            if (!curve_->bends(l)) {
-                rhs[l] = 0;
-                continue;
-            }
-            double sum = 0;
-            for (std::size_t i = 1; i < k; ++i) {
-                sum += dot(d[i - 1][l], d[k - i - 1][l]);
-            }
-            rhs[l] = 0.5 * sum / std::sqrt(dot(line[l], line[l]));
+            rhs[l] = curve_->bends(l) ? half_square(differences(l), k).value / length[l] : 0.0;
         }
-        a_.push_back(solved(rhs));
-        if (centre().cell.any() && largest(a_.back()) < infinity) {
-            put_on_grid(a_.back(), centre().dimension);
+        std::vector<double> a = solved(rhs);
+        if (centre().cell.any() && largest(a) < infinity) {
+            put_on_grid(a, centre().dimension);
         }
-        const double size = largest(a_.back()) * std::pow(reach_, static_cast<int>(k));
+        const double size = largest(a) * std::pow(reach_, static_cast<int>(k));
         if (!std::isfinite(size)) {
-            a_.pop_back();
             break;
         }
+        append(std::move(a));
         if (size < negligible) {
             break;
         }
-        d.push_back(separations(centre().layout(), a_.back(), contacts));
     }
 }
 

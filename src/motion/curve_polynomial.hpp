@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace isostat {
@@ -46,18 +47,24 @@ class CurvePolynomial {
     [[nodiscard]] const Factorisation& factorisation() const { return at_->factorisation(); }
     /// a_1 ... a_K on all coordinates (0 at rest). In a cell on a grid of their own: their separations are exact.
     [[nodiscard]] const std::vector<std::vector<double>>& coefficients() const { return a_; }
+    /// Differences of a_0 = 0, a_1 ... a_K over contact l (rounded; in a cell exact).
+    [[nodiscard]] std::span<const PerAxis<double>> differences(std::size_t l) const {
+        return {&differences_[l * (max_order + 1)], a_.size() + 1};
+    }
     /// a_0: p + a_0 meets the equations at s = 0 far better than the centre, which is rounded to a grid. Used in cells,
     /// whose grid is coarse; empty: 0.
     [[nodiscard]] const std::vector<double>& shift() const { return shift_; }
 
   private:
+    static constexpr std::size_t max_order = 14;
     [[nodiscard]] double coordinate(std::size_t k, double s) const;
     [[nodiscard]] double rate(std::size_t k, double s) const;
     [[nodiscard]] std::vector<double> solved(std::vector<double> rhs) const;
     void expand();
     void find_shift();
     bool first_coefficient();
-    void choose_reach(const std::vector<PerAxis<double>>& first);
+    void append(std::vector<double> coefficient);
+    void choose_reach();
 
     const KeptCurve* curve_;
     const ArcCentre* at_;
@@ -65,6 +72,7 @@ class CurvePolynomial {
     double inverse_ = 0;
     GapGradient row_;
     std::vector<std::vector<double>> a_;
+    std::vector<PerAxis<double>> differences_; ///< contact by contact
     std::vector<double> shift_;
     double reach_ = 0;
 };

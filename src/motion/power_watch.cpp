@@ -135,23 +135,18 @@ double PowerWatch::add_row(const CurvePiece& piece, double force, Power& power) 
 }
 
 /// Adds the part of a kept contact of two disks.
-void PowerWatch::add_contact(const CurvePiece& piece, const Contact& contact, double force, Power& power) {
-    const auto& a = piece.coefficients();
-    const std::size_t order = a.size();
-    const std::size_t axes = piece.centre().axes();
+void PowerWatch::add_contact(const CurvePiece& piece, std::size_t l, double force, Power& power) {
+    const auto d = piece.differences(l);
+    const std::size_t order = piece.coefficients().size();
     const auto count = static_cast<double>(piece.structure().size());
-    const auto line = separation(piece.centre().layout(), piece.centre().q, contact);
-    std::vector<PerAxis<double>> d(order + 1);
-    for (std::size_t k = 1; k <= order; ++k) {
-        d[k] = separation(piece.centre().layout(), a[k - 1], contact);
-    }
+    const auto line = separation(piece.centre().layout(), piece.centre().q, piece.curve().contacts[l]);
     const double weight = force / std::sqrt(dot(line, line));
     power.heaviest = std::max(power.heaviest, std::abs(weight));
     for (std::size_t k = 1; k <= order; ++k) {
         power.g[k - 1] += weight * weight * dot(d[k], d[k]);
     }
     for (std::size_t k = 2; k <= 2 * order; ++k) {
-        const RoundedSum sum = half_square(d, k, axes);
+        const RoundedSum sum = half_square(d, k);
         const double factor = static_cast<double>(k) * weight;
         power.c[k - 1] += factor * sum.value;
         power.c_open[k - 1] += (2 * static_cast<double>(k) + 24 + count) * u * std::abs(factor) * sum.absolute;
@@ -169,7 +164,7 @@ PowerWatch::Power PowerWatch::power_along(const CurvePiece& piece) const {
     const double speed = add_row(piece, forces.f[curve.slot], power);
     for (std::size_t l = 0; l < curve.contacts.size(); ++l) {
         if (curve.bends(l)) {
-            add_contact(piece, curve.contacts[l], forces.f[l], power);
+            add_contact(piece, l, forces.f[l], power);
         }
     }
     for (double& x : power.g) {

@@ -29,7 +29,7 @@ class PowerWatch {
     [[nodiscard]] Balance balance(const CurvePiece& piece) const;
     [[nodiscard]] Power power_along(const CurvePiece& piece) const;
     static double add_row(const CurvePiece& piece, double force, Power& power);
-    static void add_contact(const CurvePiece& piece, const Contact& contact, double force, Power& power);
+    static void add_contact(const CurvePiece& piece, std::size_t l, double force, Power& power);
     /// Finds the longest end [s, to] and start [from, s] on which the power is proved positive.
     void walk(const Power& power, double from, double to, int depth);
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <vector>
+#include <span>
 
 namespace isostat {
 
@@ -36,12 +36,11 @@ struct RoundedSum {
         value += term;
         absolute += std::abs(term);
     }
-    /// x . y, of which the components beyond `axes` are 0.
-    template <std::size_t size>
-    void add(const std::array<double, size>& x, const std::array<double, size>& y, std::size_t axes) {
+    /// x . y.
+    template <std::size_t size> void add(const std::array<double, size>& x, const std::array<double, size>& y) {
         double sum = 0;
         double terms = 0;
-        for (std::size_t c = 0; c < axes; ++c) {
+        for (std::size_t c = 0; c < size; ++c) {
             sum += x[c] * y[c];
             terms += std::abs(x[c] * y[c]);
         }
@@ -51,16 +50,16 @@ struct RoundedSum {
 };
 
 /// Half the coefficient of s^k in |d_1 s + d_2 s^2 + ...|^2 (d_0 is not read): a product of two vectors is taken once.
-template <class Vector> inline RoundedSum half_square(const std::vector<Vector>& d, std::size_t k, std::size_t axes) {
+template <std::size_t size> inline RoundedSum half_square(std::span<const std::array<double, size>> d, std::size_t k) {
     const std::size_t order = d.size() - 1;
     RoundedSum sum;
     if (k % 2 == 0) {
-        sum.add(d[k / 2], d[k / 2], axes);
+        sum.add(d[k / 2], d[k / 2]);
         sum.value *= 0.5;
         sum.absolute *= 0.5;
     }
     for (std::size_t i = k > order ? k - order : 1; 2 * i < k; ++i) {
-        sum.add(d[i], d[k - i], axes);
+        sum.add(d[i], d[k - i]);
     }
     return sum;
 }

@@ -418,7 +418,7 @@ void Prover::certify(ArcProof& proof, const Vertex& from, const Opening& opening
     factors_there_ =
         Factorisation::of(to.structure, first->approximate()
                                             .exchanged(static_cast<int>(opening.contact.index()), to.structure.matrix())
-                                            .renewed(to.structure.matrix()));
+                                            .renewed(to.structure.matrix(), ApproximateInverse::Use::few_solves));
     const auto vertex = [](const Vertex& v, const Factorisation& factorisation) {
         return ArcVertex{v.packing, v.structure, factorisation, v.inverse, v.enclosure};
     };

@@ -84,7 +84,7 @@ double error_of_sum(int dimension, int terms) {
             y[a] = k == 0 && a == 0 ? x[a] : k == 0 || a == 0 ? roundoff::u : roundoff::u * 0x1p-20;
             exact += Exact(x[a]) * Exact(y[a]);
         }
-        sum.add(x, y, axes);
+        sum.add(x, y);
     }
     return Exact(abs(Exact(sum.value) - exact) / exact / Exact(roundoff::u)).convert_to<double>();
 }

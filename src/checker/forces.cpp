@@ -302,7 +302,7 @@ Bounds ContactForces::bounds(std::size_t l) const {
     const Wide units = problem_->rows[l].quadratic ? problem_->sum.in<Wide>()[l] : Wide(1) << problem_->weight_bits;
     const double lower = of_double(middle_[l] - around_) * (of_double(units) * unit);
     const double upper = of_double(middle_[l] + around_) * (of_double(units) * unit);
-    return {lower - 0x1p-49 * std::abs(lower), upper + 0x1p-49 * std::abs(upper)};
+    return Bounds::outwards(lower - 0x1p-49 * std::abs(lower), upper + 0x1p-49 * std::abs(upper));
 }
 
 ContactForces contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,

@@ -105,6 +105,9 @@ Objections sharpen(Place& place, int digits);
 /// when it opens, though not at first order.
 bool grains_bear_force(const Place& place, std::size_t contact);
 
+/// The record of the last arc, or the stored state, says that the force of a contact was left at 0.
+bool is_left(const Place& place, std::size_t l);
+
 /// Which contact the rule opens at a vertex.
 struct Decision {
     std::string kind;            ///< "tension", "rattler", or empty: an equilibrium

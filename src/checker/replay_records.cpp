@@ -307,15 +307,6 @@ Objections check_work(const Place& from, const Place& to, const EventRecord& eve
     return {};
 }
 
-/// The record of the last arc, or the stored state, says that the force of a contact was left at 0.
-bool is_left(const Place& place, std::size_t l) {
-    const auto& radii = place.state->perturbation;
-    const Contact& contact = place.state->contacts[l];
-    return recorded_choice(place.said, "force", place.evidence->name(l), "") != nullptr ||
-           (radii && std::any_of(radii->zero.begin(), radii->zero.end(),
-                                 [&contact](const auto& zero) { return zero.first == contact; }));
-}
-
 /// Checks that no force is negative.
 Objections check_forces(const Place& place) {
     Decision decision;
@@ -601,6 +592,14 @@ Objections check_stored(const Place& place, const State& stored, const std::opti
         }
     }
     return check_coordinates(place, stored, start && stored.packing.q == start->packing.q);
+}
+
+bool is_left(const Place& place, std::size_t l) {
+    const auto& radii = place.state->perturbation;
+    const Contact& contact = place.state->contacts[l];
+    return recorded_choice(place.said, "force", place.evidence->name(l), "") != nullptr ||
+           (radii && std::any_of(radii->zero.begin(), radii->zero.end(),
+                                 [&contact](const auto& zero) { return zero.first == contact; }));
 }
 
 Objections check_stored_forces(const Place& place, const std::vector<double>& forces) {

@@ -141,12 +141,14 @@ Objections check_order(const Place& place, const std::string& kind, std::size_t 
             return {};
         }
         const bool holds = holds_may_explain(place, other, opened);
-        return Objection{!holds && !at_first_order,
+        const bool left = kind == "rattler" && is_left(place, other); // as at an equilibrium (C1)
+        return Objection{!holds && !left && !at_first_order,
                          fmt::format("{} opens with {}, but the rule '{}' takes {} with {}{}", e.name(opened),
                                      shown(forces[opened]), rule, e.name(other), shown(forces[other]),
-                                     holds ? ", unless a coordinate held earlier was released and turned back where it "
-                                             "stood"
-                                           : "")};
+                                     left    ? ", which the run left at 0"
+                                     : holds ? ", unless a coordinate held earlier was released and turned back where "
+                                               "it stood"
+                                             : "")};
     }
     if (sign == 0 && (most || rule == "least_negative")) {
         return Objection{false, fmt::format("the rule cannot order {} and {}", e.name(opened), e.name(other))};

@@ -220,9 +220,9 @@ Result<OpeningDecision> Stage::nothing_opens() {
 }
 
 /// Whether the strut of the contact that opens may matter: enclosures of equal forces overlap (S4), except at a turn
-/// that was just located, whose forces are not those of the exact turn.
+/// that was just located, or where what is held turned back: the forces there are not those of the exact turn.
 bool Stage::may_tie() const {
-    if (zero_.fresh.valid() || !finite_ || choice_.rule != OpeningRule::most_negative) {
+    if (zero_.fresh.valid() || !idle_.others.empty() || !finite_ || choice_.rule != OpeningRule::most_negative) {
         return true;
     }
     const Contender& least = most_negative();

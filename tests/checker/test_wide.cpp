@@ -5,6 +5,7 @@
 #include "checker/small_states.hpp"
 #include "checker/wide.hpp"
 
+#include <cfenv>
 #include <random>
 
 using namespace isostat::checker;
@@ -53,6 +54,28 @@ BOOST_AUTO_TEST_CASE(sizes_of_forces_are_within_the_range_of_double) {
         const Evidence evidence(state, isostat::CheckerArithmetic::automatic);
         const double expected = force == 1023 ? std::numeric_limits<double>::max() : std::ldexp(1, force);
         BOOST_TEST(largest_force(evidence.forces) == expected, boost::test_tools::tolerance(1e-9));
+    }
+}
+
+// Beyond the range of double too, where two modes round to its end and not to infinity.
+BOOST_AUTO_TEST_CASE(doubles_around_a_force_hold_it_in_every_rounding_mode) {
+    const Problem problem(::crafted::three_disks(1, 1.1, 1.3, 1, 1.5), false, few_digits);
+    std::mt19937_64 random(1);
+    const auto any = [&random] { // below 2^125
+        return static_cast<Wide>(static_cast<WideMagnitude>(random()) << 64U | random()) >> (3 + random() % 125);
+    };
+    for (int sample = 0; sample < 20000; ++sample) {
+        const auto exponent = static_cast<long>(random() % 2200) - 1150;
+        const Wide around = sample % 4 == 0 ? 0 : static_cast<Wide>(magnitude(any()));
+        const std::vector<Wide> middle(problem.rows.size(), any());
+        const ContactForces forces(problem, middle, around, exponent);
+        const std::size_t l = random() % middle.size();
+        const Range exact = forces[l];
+        std::fesetround(std::array{FE_TONEAREST, FE_DOWNWARD, FE_UPWARD, FE_TOWARDZERO}[random() % 4]);
+        const auto [lower, upper] = forces.bounds(l);
+        std::fesetround(FE_TONEAREST);
+        BOOST_TEST_REQUIRE((lower == -HUGE_VAL || Rational(lower) <= exact.lower));
+        BOOST_TEST_REQUIRE((upper == HUGE_VAL || Rational(upper) >= exact.upper));
     }
 }
 

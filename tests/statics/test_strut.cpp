@@ -294,6 +294,24 @@ BOOST_AUTO_TEST_CASE(a_row_of_two_is_one_strut_up_to_the_disk_that_another_hold_
     BOOST_TEST(Turn(v.statics, {fresh, {}}).mates(find(state, right(1))).empty());
 }
 
+// Two disks a little out of line, and the forces of the strut as far apart: the holds were released and turned back at
+// once, so the exact turn is here, and digits of its place do not choose.
+BOOST_AUTO_TEST_CASE(the_ends_of_a_strut_whose_holds_turned_back_are_ordered_by_the_loads) {
+    for (const double g : {1.0, -1.0}) {
+        State state = row_under_traction(2);
+        state.packing.q[3] += 4e-6; // y of the second disk
+        state.load.infinitesimal[0] = state.load.infinitesimal[2] = g;
+        AtVertex v(state, false);
+        const auto force = [&](const Contact& c) { return v.statics.force(find(state, c), v.sigma()); };
+        BOOST_TEST_REQUIRE((force(pair(0, 1)) - force(left(0))).negative());
+        const ZeroHolds aside{ContactId(), {find(state, held(1)), find(state, held(3))}};
+        const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, aside, 0);
+        BOOST_TEST_REQUIRE(decision.ok(), why(decision));
+        BOOST_TEST_REQUIRE(decision.value().opening.has_value());
+        BOOST_TEST((v.contact(decision.value().opening->contact) == (g > 0 ? left(0) : right(1))), "g = " << g);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_load_on_a_long_strut_is_bounded_with_the_rounding_of_its_sum) {
     constexpr int disks = 4000;
     State state = row_under_traction(disks);

@@ -107,9 +107,9 @@ inline std::string sealed_certificate(const std::string& text) {
         (void)isostat::parse_certificate(text, "forged");
     } catch (const isostat::Error& error) {
         const std::string message = error.what();
-        const std::size_t at = message.find("expected \""), old = text.find("\"digest\": \"");
+        const std::size_t at = message.find("expected \""), old = text.find("\"digest\":");
         if (message.find("digest is") != std::string::npos && at != std::string::npos && old != std::string::npos) {
-            return std::string(text).replace(old + 11, 64, message, at + 10, 64);
+            return std::string(text).replace(text.find('"', old + 9) + 1, 64, message, at + 10, 64);
         }
     }
     return text; // refused for another reason already

@@ -268,6 +268,23 @@ BOOST_AUTO_TEST_CASE(what_is_no_record_of_a_run_is_bad_input) {
     BOOST_CHECK_THROW((void)verify_run(run), Error);
 }
 
+BOOST_AUTO_TEST_CASE(the_summary_of_a_completed_run_has_the_counters_of_the_checkpoint) {
+    const scratch::Folder folder;
+    play(equal_forces(), {towards(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);
+    const std::string summary = scratch::read(folder / "run/summary.json");
+    for (const char* name : {"combinatorial", "double", "undecided", "equilibria", "arcs"}) {
+        const auto more = [&](const fs::path& run) {
+            json::Json altered = json::Json::parse(summary);
+            json::Json& counters = altered["counters"];
+            json::Json& count = counters.contains(name) ? counters[name] : counters["decisions"][name];
+            count = count.get<long>() + 1;
+            scratch::write(run / "summary.json", altered.dump());
+        };
+        const std::string said = said_of(folder / "run", more);
+        BOOST_TEST(said.starts_with("refuted"), name << ": " << said);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(files_that_no_record_names_are_noted_and_left_alone) {
     const scratch::Folder folder;
     play(equal_forces(), {towards(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);

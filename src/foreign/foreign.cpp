@@ -238,14 +238,11 @@ bool one_frame(const std::string& format) {
 
 Raw read_raw(const std::string& format, const std::string& text, const std::string& source,
              const ForeignOptions& options) {
-    const std::vector<std::string>& formats = foreign_formats();
-    static constexpr std::array readers{foreign::read_lammps_data, foreign::read_lammps_dump, foreign::read_xyz,
-                                        foreign::read_table,       foreign::read_braces,      foreign::read_centres};
-    const auto at = static_cast<std::size_t>(std::ranges::find(formats, format) - formats.begin());
-    if (at >= readers.size()) {
-        refuse(source, "format '{}': expected one of {}", format, fmt::join(formats, ", "));
+    const auto* const found = std::ranges::find(foreign::formats, format, &foreign::Format::name);
+    if (found == foreign::formats.end()) {
+        refuse(source, "format '{}': expected one of {}", format, fmt::join(foreign_formats(), ", "));
     }
-    return readers[at](text, source, options);
+    return found->read(text, source, options);
 }
 
 } // namespace
@@ -262,8 +259,14 @@ bool foreign::are_upper(const PerAxis<PerAxis<double>>& vectors, std::size_t d) 
 }
 
 const std::vector<std::string>& foreign_formats() {
-    static const std::vector<std::string> formats{"lammps-data", "lammps-dump", "xyz", "table", "braces", "centres"};
-    return formats;
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const foreign::Format& format : foreign::formats) {
+            all.emplace_back(format.name);
+        }
+        return all;
+    }();
+    return names;
 }
 
 ForeignPacking parse_foreign(const std::string& whole, const std::string& source, const ForeignOptions& options) {

@@ -187,10 +187,9 @@ std::string said_of(const fs::path& original, const std::function<void(const fs:
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(some_altered_fields_of_signed_runs_are_refused_or_undecided_or_listed_on_the_page,
-                     *boost::unit_test::label("slow")) {
+BOOST_FIXTURE_TEST_CASE(some_altered_fields_of_signed_runs_are_refused_or_undecided_or_listed_on_the_page,
+                        scratch::InFolder, *boost::unit_test::label("slow")) {
     altered_run::Counts counts;
-    const scratch::Folder folder;
     for (const Sample& sample : samples()) {
         BOOST_TEST_INFO_SCOPE(sample.name);
         sample.play(folder / sample.name);
@@ -223,8 +222,7 @@ BOOST_AUTO_TEST_CASE(every_altered_field_of_signed_runs_is_refused_or_undecided_
 }
 
 // A contact has one spelling, a column one name, a word one list: nothing else is read, and nothing crashes on it.
-BOOST_AUTO_TEST_CASE(what_is_no_record_of_a_run_is_bad_input) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_is_no_record_of_a_run_is_bad_input, scratch::InFolder) {
     play(equal_forces(), {towards(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);
     const fs::path run = folder / "run";
     const auto refuses = [&](const char* file, const std::string& from, const std::string& to) {
@@ -268,8 +266,7 @@ BOOST_AUTO_TEST_CASE(what_is_no_record_of_a_run_is_bad_input) {
     BOOST_CHECK_THROW((void)verify_run(run), Error);
 }
 
-BOOST_AUTO_TEST_CASE(files_that_no_record_names_are_noted_and_left_alone) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(files_that_no_record_names_are_noted_and_left_alone, scratch::InFolder) {
     play(equal_forces(), {towards(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);
     BOOST_TEST(verify_run(folder / "run").notes.size() == 0U);
     scratch::write(folder / "run/states/notes.json", "{}");
@@ -282,8 +279,8 @@ BOOST_AUTO_TEST_CASE(files_that_no_record_names_are_noted_and_left_alone) {
 }
 
 // A bound that is too small is wrong; beside one so large that nothing follows from it the number itself must be right.
-BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked, *boost::unit_test::label("slow")) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked, scratch::InFolder,
+                        *boost::unit_test::label("slow")) {
     play(prepared(8, 3), {towards(2)}, folder / "eight");
     const auto fields = scratch::row_of(folder / "eight/equilibria.csv", 1);
     const std::vector<std::pair<std::string, std::string>> pairs{{"eps1", "eps1_bound"},
@@ -321,8 +318,7 @@ BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked, *boost::unit_
 
 // The fifth disk is moved into the way of disk 0, in every file: the ends of the arc, the forces and the certificates
 // are those of the run in which it is not there, and overlap is nowhere but on the way.
-BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved, scratch::InFolder) {
     const State near = swing(12.990813884605371, 11.394639418507785);
     play(swing(12.991722005007981, 11.395062882006048), {towards(-1)}, folder / "far");
     play(near, {towards(-1)}, folder / "near");

@@ -193,8 +193,7 @@ BOOST_AUTO_TEST_CASE(mutated_tables_with_stated_columns_lose_no_row) {
     BOOST_TEST(fuzz::fuzz("table with its own names", "x y radius\n" + bare, 1500, read).refused > 100);
 }
 
-BOOST_AUTO_TEST_CASE(mutated_series_of_frames_are_refused_by_name_or_have_sound_frames) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(mutated_series_of_frames_are_refused_by_name_or_have_sound_frames, scratch::InFolder) {
     std::filesystem::copy(scratch::data("series"), folder / "series");
     const auto read = [&](const std::filesystem::path& file, const std::string& changed) {
         scratch::write(file, changed);

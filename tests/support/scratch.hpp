@@ -36,6 +36,11 @@ class Folder {
     std::filesystem::path path_;
 };
 
+/// The fixture of a case with a folder.
+struct InFolder {
+    const Folder folder;
+};
+
 inline std::string read(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::ostringstream text;

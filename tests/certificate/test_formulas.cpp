@@ -7,6 +7,7 @@
 #include "support/cells.hpp"
 #include "support/crafted.hpp"
 #include "support/scratch.hpp"
+#include "support/free_grains.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
@@ -21,10 +22,6 @@ State pushed(State state, double size) {
         state.packing.q[k] += size * std::sin(7.0 * static_cast<double>(k));
     }
     return state;
-}
-
-double norm_of(const std::vector<double>& x) {
-    return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0));
 }
 
 void check_above(double value, double least, double slack) {
@@ -189,9 +186,7 @@ BOOST_AUTO_TEST_CASE(pairs_beyond_the_list_are_as_far_as_its_reach_less_the_way_
     // nearer than that. Disk 6 carries so little that the vertex is known in double-double, hence far better than
     // 1e-10.
     State state;
-    state.packing.walls = Walls::none();
-    state.packing.radius = {3, 3, 2, 1, 3, 3, 2};
-    state.packing.q = {-3, 0, 3, 0, 0, 4 + 1e-10, 0, 0, -3, -90, 3, -90, 0, -86, 0, 0};
+    state.packing = free_grains({3, 3, 2, 1, 3, 3, 2}, {-3, 0, 3, 0, 0, 4 + 1e-10, 0, 0, -3, -90, 3, -90, 0, -86});
     state.packing.fixed = {1, 1, 0, 1, 1, 1, 0};
     state.load.disk_force = {0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0, 0, -1e-25};
     state.contacts = {pair(0, 2), pair(1, 2), pair(4, 6), pair(5, 6)};
@@ -271,11 +266,8 @@ BOOST_AUTO_TEST_CASE(true_stresses_on_a_sphere_press_on_the_areas_of_the_true_ve
 
 BOOST_AUTO_TEST_CASE(periods_in_space_are_stretched_as_little_as_C4_counts_on) {
     oracle::Random random(8);
-    Packing packing; // one sphere, which has no extent
-    packing.dimension = packing.cell.dimension = 3;
-    packing.walls = Walls::none();
-    packing.radius = {1};
-    double nearest = 0; // of the least stretch found to the bound
+    Packing packing = free_grains({1}, {}, 3); // one sphere, which has no extent
+    double nearest = 0;                        // of the least stretch found to the bound
     for (int trial = 0; trial < 200; ++trial) {
         packing.q.assign(9, 0.0);
         for (std::size_t a = 0; a < 3; ++a) {

@@ -8,6 +8,7 @@
 #include "checker/vertex.hpp"
 #include "support/scratch.hpp"
 #include "support/spheres.hpp"
+#include "support/units.hpp"
 
 #include <isostat/checker/verify.hpp>
 
@@ -190,11 +191,7 @@ BOOST_AUTO_TEST_CASE(lengths_scale) {
     for (const int exponent : {-900, -60, 60, 900}) {
         State state = small_states::with_a_rattler();
         const checker::Rational one = smallest_singular_value(Problem(state)).value();
-        for (std::vector<double>* lengths : {&state.packing.q, &state.packing.radius}) {
-            for (double& x : *lengths) {
-                x = std::ldexp(x, exponent);
-            }
-        }
+        units::stretch(state.packing, std::ldexp(1.0, exponent));
         const checker::Rational scaled = smallest_singular_value(Problem(state)).value();
         BOOST_TEST((scaled == one * checker::power_of_two(exponent)), exponent);
     }

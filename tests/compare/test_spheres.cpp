@@ -1,6 +1,7 @@
 // Series of frames of soft spheres, made from the exact run by overlaps: every frame is the exact equilibrium.
 #include "compare/series_copy.hpp"
 #include "linear/factorisation.hpp"
+#include "support/newton.hpp"
 #include "rigidity/isostatic.hpp"
 #include "support/bad_input.hpp"
 #include "support/spheres.hpp"
@@ -21,15 +22,7 @@ Packing overlapping(const State& state, const std::vector<double>& overlaps) {
     Packing packing = state.packing;
     const DofMap dofs(packing);
     for (int turn = 0; turn < 5; ++turn) {
-        const auto structure = IsostaticStructure::prove(packing, state.contacts);
-        std::vector<double> step(overlaps.size());
-        for (std::size_t l = 0; l < step.size(); ++l) {
-            step[l] = gap(packing, state.contacts[l]) + overlaps[l];
-        }
-        Factorisation(structure.value()).solve_velocities(step);
-        for (std::size_t k = 0; k < step.size(); ++k) {
-            packing.q[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(k)))] += step[k];
-        }
+        crafted::step_to_gaps(packing, state.contacts, gaps);
     }
     return packing;
 }

@@ -3,7 +3,9 @@
 #include "oracle/geometry.hpp"
 #include "oracle/packings.hpp"
 #include "oracle/pairs.hpp"
+#include "support/free_grains.hpp"
 #include "support/scale.hpp"
+#include "support/units.hpp"
 
 #include <gmpxx.h>
 
@@ -71,10 +73,7 @@ Packing pair_at(double x, double y, double r0, double r1) {
 
 /// Spheres each of which touches one before it, or nearly, without overlap; `axes` that they spread along.
 Packing spheres_that_cling(Random& random, int axes) {
-    Packing packing;
-    packing.dimension = packing.cell.dimension = 3;
-    packing.walls = Walls::none();
-    packing.radius = {1};
+    Packing packing = crafted::free_grains({1}, {}, 3);
     packing.q = {0, 0, 0};
     const double ratio = random.integer(2) == 0 ? 1 : random.real(1, 4);
     for (int tries = 0; tries < 400; ++tries) {
@@ -281,11 +280,7 @@ BOOST_AUTO_TEST_CASE(powers_of_two_in_the_unit_change_nothing) {
     const std::vector<Contact> reference = find_candidates(packing, 0.82).contacts;
     for (const int exponent : {-900, -560, -20, 20, 560, 900}) {
         Packing scaled = packing;
-        for (std::vector<double>* lengths : {&scaled.q, &scaled.radius}) {
-            for (double& x : *lengths) {
-                x = std::ldexp(x, exponent);
-            }
-        }
+        units::stretch(scaled, std::ldexp(1.0, exponent));
         BOOST_TEST((find_candidates(scaled, 0.82).contacts == reference));
         check_verdict(scaled, 0);
     }

@@ -5,6 +5,7 @@
 #include "contact/other_pairs.hpp"
 #include "packing/bodies.hpp"
 #include "support/cells.hpp"
+#include "support/free_grains.hpp"
 #include "support/test.hpp"
 
 #include <isostat/core/result.hpp>
@@ -179,10 +180,7 @@ BOOST_AUTO_TEST_CASE(one_contact_has_one_name) {
 BOOST_AUTO_TEST_CASE(a_nearest_pair_that_no_list_reaches_is_far) {
     // One disk that touches its image; the next image is a period further, in a cell that leans over `lean` heights.
     const auto next_pair = [](double lean) {
-        Packing packing;
-        packing.walls = isostat::Walls::none();
-        packing.radius = {1};
-        packing.q = {0, 0, 2, 100, 100 * lean};
+        Packing packing = crafted::free_grains({1}, {0, 0, 2, 100, 100 * lean});
         packing.cell = {{true, true}, {true, true}, {true}, 0};
         return isostat::other_pairs(packing, {cells::across(0, 0, 1, 0)});
     };
@@ -222,12 +220,9 @@ BOOST_AUTO_TEST_CASE(pairs_of_clumps_are_all_but_those_of_one_body) {
 }
 
 BOOST_AUTO_TEST_CASE(a_member_and_the_image_of_another_are_a_pair) {
-    Packing p;
-    p.walls = isostat::Walls::none();
+    Packing p = crafted::free_grains({1, 1}, {5, 5, 6, 5, 3.1, 9, 0});
     p.cell.repeat();
     p.cell.move(true, true);
-    p.radius = {1, 1};
-    p.q = {5, 5, 6, 5, 3.1, 9, 0};
     p.bars = {{0, 1, 1}};
     const std::vector<Contact> found = isostat::near_pairs(p, 0.3).pairs;
     BOOST_TEST((std::find(found.begin(), found.end(), isostat::pair_of(0, 1, {{-1, 0, 0}})) != found.end()));

@@ -1,6 +1,7 @@
 #include "oracle/packings.hpp"
 #include "support/bad_input.hpp"
 #include "support/scale.hpp"
+#include "support/free_grains.hpp"
 #include "support/test.hpp"
 
 #include <isostat/packing/load.hpp>
@@ -170,11 +171,7 @@ BOOST_AUTO_TEST_CASE(valid_packings_pass) {
 }
 
 BOOST_AUTO_TEST_CASE(a_cell_of_spheres_keeps_its_shape_where_none_touches_itself_along_a_period_at_rest) {
-    Packing packing;
-    packing.dimension = packing.cell.dimension = 3;
-    packing.walls = Walls::none();
-    packing.radius = {1};
-    packing.q = {0, 0, 0, 3, 2.5, 2, 0, 0, 0};
+    Packing packing = crafted::free_grains({1}, {0, 0, 0, 3, 2.5, 2, 0, 0, 0}, 3);
     packing.cell.repeat();
     packing.cell.keep_shape();
     is_valid(packing);

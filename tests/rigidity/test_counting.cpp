@@ -5,6 +5,7 @@
 #include "support/bad_input.hpp"
 #include "support/cells.hpp"
 #include "support/crafted.hpp"
+#include "support/free_grains.hpp"
 #include "support/regular.hpp"
 #include "support/threads.hpp"
 
@@ -210,12 +211,7 @@ BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded, *b
         BOOST_TEST((proved.evidence() == RegularityEvidence::elimination));
         BOOST_TEST(&proved.matrix() == &regular.unproved().matrix());
         // Disk 2 between two fixed ones in one line, tilted: singular, but not by its pattern.
-        State strut;
-        strut.packing.walls = Walls::none();
-        strut.packing.radius = {1, 1, 1};
-        strut.packing.q = {-2, -1, 2, 1, 0, 0, 0, 0};
-        strut.packing.fixed = {1, 1, 0};
-        strut.contacts = {pair(0, 2), pair(1, 2)};
+        const State strut = crafted::held_by_two({1, 1, 1}, {-2, -1, 2, 1, 0, 0});
         auto singular = required(RankProof::begin(strut.packing, strut.contacts));
         BOOST_TEST(!singular.is_regular());
         BOOST_TEST_REQUIRE(!singular.conclude().ok());

@@ -9,6 +9,7 @@
 #include "support/clumps.hpp"
 #include "support/crafted.hpp"
 #include "support/regular.hpp"
+#include "support/free_grains.hpp"
 #include "support/test.hpp"
 #include "verified/configuration.hpp"
 #include "verified/force_ladder.hpp"
@@ -96,13 +97,7 @@ bool check(const State& state, const std::vector<double>& force) {
 
 /// A free disk between two fixed ones whose directions differ from opposite by `angle`: sigma_min ~ angle / sqrt 2.
 State nearly_collinear(double angle) {
-    State state;
-    state.packing.walls = Walls::none();
-    state.packing.radius = {1, 1, 1};
-    state.packing.q = {-2, 0, 2 * std::cos(angle), 2 * std::sin(angle), 0, 0, 0, 0};
-    state.packing.fixed = {1, 1, 0};
-    state.contacts = {pair(0, 2), pair(1, 2)};
-    return state;
+    return crafted::held_by_two({1, 1, 1}, {-2, 0, 2 * std::cos(angle), 2 * std::sin(angle), 0, 0});
 }
 
 isostat::sparse::Matrix<double> compressed(const Eigen::MatrixXd& dense) {

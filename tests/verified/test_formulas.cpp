@@ -3,6 +3,7 @@
 #include "oracle/random.hpp"
 #include "oracle/truth.hpp"
 #include "support/crafted.hpp"
+#include "support/free_grains.hpp"
 #include "support/regular.hpp"
 #include "support/scale.hpp"
 #include "support/scratch.hpp"
@@ -90,15 +91,9 @@ State pushed(State state, double size) {
 /// A free disk of radius `free` between two fixed ones of radius 1, which are opposite up to `angle`; all turned by
 /// `tilt`. Singular values: some angle / sqrt 2, and sqrt 2.
 State between_two(double angle, double tilt, double free = 1) {
-    State state;
     const double d = 1 + free;
-    state.packing.walls = Walls::none();
-    state.packing.radius = {1, 1, free};
-    state.packing.q = {
-        -d * std::cos(tilt), -d * std::sin(tilt), d * std::cos(tilt + angle), d * std::sin(tilt + angle), 0, 0, 0, 0};
-    state.packing.fixed = {1, 1, 0};
-    state.contacts = {pair(0, 2), pair(1, 2)};
-    return state;
+    return crafted::held_by_two({1, 1, free}, {-d * std::cos(tilt), -d * std::sin(tilt), d * std::cos(tilt + angle),
+                                               d * std::sin(tilt + angle), 0, 0});
 }
 
 /// The unit vector from disk k to disk 2 at its place plus `shift`: the gradient of their gap.
@@ -325,12 +320,7 @@ BOOST_AUTO_TEST_CASE(what_a_newton_step_leaves_is_counted_as_V4_says) {
     check_above(vertex.step_radius, (rest + product * eta) * (1 - Real("1e-6")), 0.01);
     check_above(vertex.radius, eta * (1 + product) * (1 - Real("1e-6")), 0.01);
     // Gaps that are exactly 0: what remains is 2^-98 D of each.
-    State exact;
-    exact.packing.walls = Walls::none();
-    exact.packing.radius = {3, 3, 2};
-    exact.packing.q = {-3, 0, 3, 0, 0, 4, 0, 0};
-    exact.packing.fixed = {1, 1, 0};
-    exact.contacts = {pair(0, 2), pair(1, 2)};
+    const State exact = crafted::held_by_two({3, 3, 2}, {-3, 0, 3, 0, 0, 4});
     const Known at(exact);
     const VertexEnclosure here = enclose_vertex(exact.packing, at.structure, at.factorisation, at.inverse);
     BOOST_TEST_REQUIRE((here.verdict == Verdict::proved));

@@ -155,8 +155,7 @@ template <class Row> std::string csv(const std::vector<Column<Row>>& columns, co
 }
 
 template <class Row> Json objects(const std::vector<Column<Row>>& columns, const std::vector<Row>& rows) {
-    Json out = Json::array();
-    for (const Row& row : rows) {
+    return json::array_of(rows, [&](const Row& row) {
         Json object;
         for (const auto& column : columns) {
             object[column.name] = column.value(row);

@@ -211,10 +211,9 @@ class Frames {
 Json equilibria_json(const RunRecords& records) {
     Json object;
     for (const char* name : columns) {
-        Json& column = object[name] = Json::array();
-        for (const EquilibriumLine& line : records.equilibria) {
-            column.push_back(json::or_null(line.value.contains(name) ? line.at(name) : NAN));
-        }
+        object[name] = json::array_of(records.equilibria, [name](const EquilibriumLine& line) {
+            return json::or_null(line.value.contains(name) ? line.at(name) : NAN);
+        });
     }
     return object;
 }

@@ -20,7 +20,6 @@
 #include <cerrno>
 #include <concepts>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <functional>

@@ -13,8 +13,6 @@
 #include <isostat/core/machine.hpp>
 #include <isostat/crafted/plateau.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>

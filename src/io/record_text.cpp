@@ -5,8 +5,6 @@
 
 #include <isostat/io/run_directory.hpp>
 
-#include <fmt/format.h>
-
 #include <limits>
 #include <type_traits>
 #include <utility>

@@ -4,8 +4,6 @@
 #include "core/refuse.hpp"
 #include "packing/words.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <numeric>
 

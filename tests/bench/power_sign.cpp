@@ -17,8 +17,6 @@
 #include "verified/configuration.hpp"
 #include "verified/vertex_bounds.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 

@@ -6,7 +6,6 @@
 #include "oracle/random.hpp"
 #include "support/cells.hpp"
 #include "support/crafted.hpp"
-#include "support/scratch.hpp"
 #include "support/free_grains.hpp"
 
 #include <isostat/certificate/certify.hpp>

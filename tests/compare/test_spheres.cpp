@@ -1,8 +1,5 @@
 // Series of frames of soft spheres, made from the exact run by overlaps: every frame is the exact equilibrium.
 #include "compare/series_copy.hpp"
-#include "linear/factorisation.hpp"
-#include "support/newton.hpp"
-#include "rigidity/isostatic.hpp"
 #include "support/bad_input.hpp"
 #include "support/spheres.hpp"
 

@@ -4,7 +4,6 @@
 #include "motion/curve_piece.hpp"
 #include "oracle/random.hpp"
 #include "oracle/truth.hpp"
-#include "support/spheres.hpp"
 #include "support/free_grains.hpp"
 #include "support/test.hpp"
 

@@ -1,6 +1,5 @@
 #include "oracle/packings.hpp"
 #include "support/bad_input.hpp"
-#include "support/scale.hpp"
 #include "support/free_grains.hpp"
 #include "support/test.hpp"
 

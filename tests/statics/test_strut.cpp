@@ -9,8 +9,6 @@
 
 #include <isostat/preparation/preparation.hpp>
 
-#include <queue>
-
 using namespace isostat;
 using namespace crafted;
 

@@ -1,9 +1,7 @@
 #pragma once
 // The same packing with radii that are really changed by a little: what a rule for ties is compared with.
 
-#include "linear/factorisation.hpp"
 #include "statics/first_order_backbone.hpp"
-#include "support/newton.hpp"
 #include "support/crafted.hpp"
 
 namespace crafted {

@@ -8,7 +8,6 @@
 #include "statics/statics.hpp"
 #include "support/clumps.hpp"
 #include "support/crafted.hpp"
-#include "support/regular.hpp"
 #include "support/free_grains.hpp"
 #include "support/test.hpp"
 #include "verified/configuration.hpp"

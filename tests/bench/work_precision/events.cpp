@@ -7,8 +7,6 @@
 #include <fmt/format.h>
 #include <qd/dd_real.h>
 
-#include <functional>
-
 using namespace isostat;
 using oracle::Reference;
 using oracle::ReferenceArc;

@@ -1,3 +1,4 @@
+#include "core/dot.hpp"
 #include "support/disguised_cells.hpp"
 #include "support/prepared.hpp"
 
@@ -294,7 +295,7 @@ State isotropic(std::uint64_t seed) {
 std::array<double, 2> power_and_imbalance(const State& state, const Certification& truth) {
     const auto& p = state.packing;
     std::vector<double> balance(2 * p.radius.size(), 0.0);
-    double power = 0, imbalance = 0;
+    double power = 0;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const Contact& c = state.contacts[l];
         const double f = 0.5 * (truth.finite[l].lower + truth.finite[l].upper);
@@ -312,10 +313,7 @@ std::array<double, 2> power_and_imbalance(const State& state, const Certificatio
             power += f * r[a] / d * periods[a];
         }
     }
-    for (const double b : balance) {
-        imbalance = std::max(imbalance, std::abs(b));
-    }
-    return {power, imbalance};
+    return {power, isostat::largest(balance)};
 }
 
 } // namespace

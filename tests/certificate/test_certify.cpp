@@ -65,7 +65,7 @@ bool check_claims(const State& state, const Certification& c, int open = 0) {
     BOOST_TEST(claims.vertex->radius <= claims.vertex->unique_radius);
     for (std::size_t l = 0; claims.forces && l < n; ++l) {
         const auto& zeros = claims.forces->structural_zeros;
-        const bool zero = std::find(zeros.begin(), zeros.end(), static_cast<int>(l)) != zeros.end();
+        const bool zero = std::ranges::find(zeros, static_cast<int>(l)) != zeros.end();
         const Interval& f = claims.forces->finite[l];
         BOOST_TEST((zero ? f == Interval{0, 0} : f.lower > 0), to_string(state.contacts[l]));
     }
@@ -313,9 +313,7 @@ BOOST_AUTO_TEST_CASE(negative_forces_refute_and_so_does_a_rattler_pulled_off_its
     BOOST_REQUIRE((before.claims.forces && !before.claims.forces->structural_zeros.empty()));
     const auto zero = static_cast<std::size_t>(before.claims.forces->structural_zeros.front());
     const auto rattler = static_cast<std::size_t>(rattling.contacts[zero].i);
-    for (double& g : rattling.load.infinitesimal) {
-        g = -g;
-    }
+    std::ranges::transform(rattling.load.infinitesimal, rattling.load.infinitesimal.begin(), std::negate());
     const Certification after = certify(rattling);
     BOOST_TEST((after.verdict == Verdict::refuted), "the rattler " << rattler << " and all others are pulled up");
     BOOST_TEST(!after.claims.forces);

@@ -225,8 +225,7 @@ BOOST_AUTO_TEST_CASE(several_mechanisms_have_a_minimum_together_or_none) {
         BOOST_TEST((inspected(turned).stable == Verdict::refuted));
     }
     State touching = two; // a pair that touches beside the contacts leaves no way
-    touching.contacts.erase(
-        std::find(touching.contacts.begin(), touching.contacts.end(), Contact{ContactKind::disk_disk, 0, 2}));
+    touching.contacts.erase(std::ranges::find(touching.contacts, Contact{ContactKind::disk_disk, 0, 2}));
     BOOST_TEST((inspected(touching).stable != Verdict::proved));
 }
 

@@ -3,10 +3,12 @@
 #include "certificate/reach.hpp"
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
+#include "core/dot.hpp"
 #include "oracle/random.hpp"
 #include "support/cells.hpp"
 #include "support/crafted.hpp"
 #include "support/free_grains.hpp"
+#include "support/scratch.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
@@ -46,7 +48,7 @@ struct Worse {
         for (const Contact& c : state.contacts) {
             f.push_back(gap(state.packing, c)); // F = gap (1 + gap / 2 D)
         }
-        residual = norm_of(f);
+        residual = euclidean_norm(f);
         beta = std::sqrt(h / (k * residual));
         radius = 1.18 * beta * residual;
         centre->neighbourhood.inverse_norm = beta;
@@ -55,7 +57,7 @@ struct Worse {
     }
     /// max_i sum |x_l| / D_l: only one contact has two disks.
     [[nodiscard]] double weight(const std::vector<double>& x) const {
-        const auto l = std::find(state.contacts.begin(), state.contacts.end(), pair(0, 1)) - state.contacts.begin();
+        const auto l = std::ranges::find(state.contacts, pair(0, 1)) - state.contacts.begin();
         return std::abs(x[static_cast<std::size_t>(l)]) / 3;
     }
     [[nodiscard]] std::vector<double> middle(const std::vector<Interval>& x) const {
@@ -100,8 +102,7 @@ BOOST_AUTO_TEST_CASE(the_centre_has_the_constants_of_V4) {
                 ++count[j];
             }
         }
-        check_above(centre.neighbourhood.lipschitz,
-                    2 * std::sqrt(*std::max_element(count.begin(), count.end())) / smallest, 1e-12);
+        check_above(centre.neighbourhood.lipschitz, 2 * std::sqrt(*std::ranges::max_element(count)) / smallest, 1e-12);
         check_above(centre.neighbourhood.inverse_norm * centre.inverse.sigma_min, 1 / (1 - ratio), 3 * ratio + 1e-12);
         BOOST_TEST(centre.neighbourhood.inverse_norm * centre.inverse.sigma_min >= 1 + 2 * ratio);
         BOOST_TEST(centre.largest_gap >= largest);
@@ -136,16 +137,11 @@ BOOST_AUTO_TEST_CASE(the_stored_point_is_within_the_radius_claimed) {
     const auto vertex = in_double_double(*worse.subject, *worse.centre);
     BOOST_TEST_REQUIRE(vertex->exists());
     std::vector<double> step;
-    for (const Contact& c : worse.state.contacts) {
-        step.push_back(gap(worse.state.packing, c));
-    }
+    std::ranges::transform(worse.state.contacts, std::back_inserter(step),
+                           [&](const Contact& c) { return gap(worse.state.packing, c); });
     worse.centre->factorisation.solve_velocities(step);
-    double largest = 0;
-    for (const double s : step) {
-        largest = std::max(largest, std::abs(s));
-    }
-    check_above(vertex->radius(), largest * (1 - 1e-6), 1e-3);
-    check_above(vertex->distance(), norm_of(step) * (1 - 1e-6), 1e-3);
+    check_above(vertex->radius(), largest(step) * (1 - 1e-6), 1e-3);
+    check_above(vertex->distance(), euclidean_norm(step) * (1 - 1e-6), 1e-3);
 }
 
 BOOST_AUTO_TEST_CASE(forces_have_the_bound_of_V6) {
@@ -170,9 +166,8 @@ BOOST_AUTO_TEST_CASE(ends_of_the_interval_have_the_bound_of_V7) {
         const std::vector<double> b = worse.slopes();
         const double a_bound = (worse.vertex->forces()[0].upper - worse.vertex->forces()[0].lower) / 2;
         const double b_bound = 2 * worse.weight(b) * worse.radius / worse.vertex->sigma_min();
-        const auto opens = static_cast<std::size_t>(
-            std::find(worse.state.contacts.begin(), worse.state.contacts.end(), high.claim->opens) -
-            worse.state.contacts.begin());
+        const auto opens = static_cast<std::size_t>(std::ranges::find(worse.state.contacts, high.claim->opens) -
+                                                    worse.state.contacts.begin());
         const double t = f[opens] / b[opens];
         const double least = (a_bound + std::abs(t) * b_bound) / (std::abs(b[opens]) - b_bound);
         BOOST_TEST(b_bound > 1e-3 * std::abs(b[opens])); // so that every term counts

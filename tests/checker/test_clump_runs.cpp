@@ -283,14 +283,13 @@ BOOST_AUTO_TEST_CASE(a_forged_witness_of_spheres_proves_no_way) {
 BOOST_AUTO_TEST_CASE(no_contact_of_spheres_is_left_out_at_a_turn) {
     State state = test::state_of_spheres(test::read_spheres("closed_rattler"));
     snap_to_grid(state.packing);
-    const auto wall = std::find_if(state.contacts.begin(), state.contacts.end(), [](const Contact& c) {
-        return c.kind == ContactKind::lower_wall && c.i == 1 && c.j == 2;
-    });
+    const auto wall = std::ranges::find_if(
+        state.contacts, [](const Contact& c) { return c.kind == ContactKind::lower_wall && c.i == 1 && c.j == 2; });
     BOOST_REQUIRE(wall != state.contacts.end());
     *wall = {ContactKind::held, 5, 0};
     checker::Place place;
     const auto row = static_cast<int>(wall - state.contacts.begin());
     (void)checker::make_place(state, place, {}, row);
-    BOOST_TEST(std::count(place.silent.begin(), place.silent.end(), true) == 0);
+    BOOST_TEST(std::ranges::count(place.silent, true) == 0);
     BOOST_TEST(place.silent.size() == state.contacts.size());
 }

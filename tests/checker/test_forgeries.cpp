@@ -146,7 +146,7 @@ std::set<std::string> listed(std::size_t column) {
 
 /// The entry for a field: its name, or the beginning of it with a star.
 std::string entry_for(const std::set<std::string>& list, const std::string& field) {
-    const auto found = std::find_if(list.begin(), list.end(), [&](const std::string& entry) {
+    const auto found = std::ranges::find_if(list, [&](const std::string& entry) {
         return field == entry || (entry.ends_with('*') && field.starts_with(entry.substr(0, entry.size() - 1)));
     });
     return found == list.end() ? "" : *found;

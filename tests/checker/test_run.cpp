@@ -18,7 +18,7 @@ void play_and_store(const State& start, const std::vector<int>& segments, const 
                     OpeningRule rule = OpeningRule::most_negative, TiePolicy ties = TiePolicy::stop) {
     RunOptions options{.rule = rule, .max_strain = 1e9, .ties = ties};
     std::vector<Segment> all;
-    std::transform(segments.begin(), segments.end(), std::back_inserter(all), towards);
+    std::ranges::transform(segments, std::back_inserter(all), towards);
     const SegmentOutcome outcome = played::into(folder, start, all, options);
     BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
 }

@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(a_singular_value_that_approaches_zero_is_never_overstated) 
 BOOST_AUTO_TEST_CASE(a_singular_matrix_of_a_large_state_has_no_bound) {
     State state = sample("vertex400.txt");
     const auto is_pair = [](const Contact& c) { return c.kind == ContactKind::disk_disk; };
-    const auto first = std::find_if(state.contacts.begin(), state.contacts.end(), is_pair);
+    const auto first = std::ranges::find_if(state.contacts, is_pair);
     for (int other = 1; other < 200; ++other) {
         State singular = state;
         singular.contacts[static_cast<std::size_t>(first - state.contacts.begin() + other)] = *first;
@@ -140,7 +140,7 @@ checker::SparseRows<double> random_rows(std::mt19937& random, int n, bool singul
 std::vector<int> mixed_order(std::mt19937& random, int n) {
     std::vector<int> order(static_cast<std::size_t>(n));
     std::iota(order.begin(), order.end(), 0);
-    std::shuffle(order.begin(), order.end(), random);
+    std::ranges::shuffle(order, random);
     return order;
 }
 

@@ -169,8 +169,8 @@ BOOST_AUTO_TEST_CASE(the_power_of_true_stresses_on_spheres_is_positive_from_wher
     Moving moving;
     moving.state = isostat::test::state_of_spheres(isostat::test::read_spheres("closed_two"));
     const Contact floor{ContactKind::lower_wall, 1, 2};
-    std::copy_if(moving.state.contacts.begin(), moving.state.contacts.end(), std::back_inserter(moving.kept),
-                 [&](const Contact& c) { return c != floor; });
+    std::ranges::copy_if(moving.state.contacts, std::back_inserter(moving.kept),
+                         [&](const Contact& c) { return c != floor; });
     moving.coordinates = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     moving.moves.assign(9, true);
     moving.loose.assign(9, false);

@@ -338,7 +338,7 @@ BOOST_FIXTURE_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_force
             return json_of(run({"snap", folder.at("state.json"), "-o", made, "--json"})).at("forces");
         };
         BOOST_TEST(forces_of().at("rest").get<double>() < 1e-9);
-        const auto strongest = std::max_element(state.forces.begin(), state.forces.end());
+        const auto strongest = std::ranges::max_element(state.forces);
         *strongest *= 1.25;
         const auto wrong = forces_of();
         BOOST_TEST(wrong.at("rest").get<double>() * wrong.at("mean").get<double>() == 0.2 * *strongest,

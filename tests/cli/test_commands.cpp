@@ -139,7 +139,7 @@ BOOST_FIXTURE_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so, scratch
         BOOST_TEST(row.backbone == 2 * (100 - row.rattlers) + 2);
     }
     BOOST_TEST(rows.back().ratio == 1.0);
-    const auto branch = std::find_if(rows.begin(), rows.end(), [](const auto& r) { return r.segment == 2; });
+    const auto branch = std::ranges::find_if(rows, [](const auto& r) { return r.segment == 2; });
     BOOST_REQUIRE((branch != rows.end()));
     BOOST_TEST(branch->previous == 3);
     for (const char* name : {"eq_000000", "eq_000003", "eq_000006", "last"}) {

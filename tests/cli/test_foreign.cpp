@@ -37,7 +37,7 @@ BOOST_AUTO_TEST_CASE(plateau_says_what_is_wrong_with_walls_and_pseudo_atoms) {
     // Overlaps stand in three rows at most, not in every second one.
     const auto table = exact.out.substr(exact.out.find("threshold candidates"));
     const auto rows = table.substr(0, table.find("\n\n"));
-    const auto negative = std::count(rows.begin(), rows.end(), '|') == 0 ? 99 : [&rows] {
+    const auto negative = std::ranges::count(rows, '|') == 0 ? 99 : [&rows] {
         int count = 0;
         for (std::size_t at = 0; (at = rows.find('\n', at)) != std::string::npos; ++at) {
             const std::size_t first = rows.find_first_not_of(" \n", at);
@@ -77,7 +77,7 @@ BOOST_FIXTURE_TEST_CASE(plateau_of_a_table_with_walls_in_text_json_and_csv, scra
     BOOST_TEST(table.starts_with("threshold,candidates,rattlers,N_f,N,rank,h,k,"));
     arguments = plus(arguments, {"--json"});
     const auto json = says(run(arguments), 0, {"\"format\":\"isostat-plateau 1\"", "\"N\":8"});
-    BOOST_TEST(std::count(json.out.begin(), json.out.end(), '\n') == 1);
+    BOOST_TEST(std::ranges::count(json.out, '\n') == 1);
     // The same numbers as radii: disks of twice the size overlap and leave the box of their walls.
     BOOST_TEST(
         contains(run(plus(arguments, {"--radius", "diameter"})).out, "radius from column 'diameter', as stated"));
@@ -114,7 +114,7 @@ BOOST_FIXTURE_TEST_CASE(genericity_of_a_lattice_of_equal_disks, scratch::InFolde
     says(run({"genericity", lattice, "--samples", "10", "--size", "1e-3,1e-12", "--csv", folder.at("g.csv")}), 0,
          {"h = 4, k = 0"});
     const std::string table = scratch::read(folder / "g.csv");
-    BOOST_TEST(std::count(table.begin(), table.end(), '\n') == 21);
+    BOOST_TEST(std::ranges::count(table, '\n') == 21);
     BOOST_TEST(contains(table, "proved"));
     // Equal radii that stay equal: a true tie, and never called isostatic.
     says(run({"genericity", lattice, "--samples", "3", "--size", "1e-3", "--keep-equal", "--json"}), 2,

@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(soft_grains_end_at_the_vertex_that_they_came_from) {
         BOOST_TEST(backbone < 25 * part + 1e-11);
         BOOST_TEST(backbone > 5 * part);
         const std::string rows = scratch::read(moved);
-        BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 101);
+        BOOST_TEST(std::ranges::count(rows, '\n') == 101);
         // The vertex is that of the sample: its file has the disks in the opposite order.
         const Packing found = read_state(folder / "s.json").state.packing;
         for (std::size_t a = 0; a < 2; ++a) {
@@ -112,8 +112,8 @@ BOOST_FIXTURE_TEST_CASE(soft_grains_of_yade_end_at_the_vertex_that_they_came_fro
         BOOST_TEST(moved > 1e-6); // overlaps and digits
         BOOST_TEST(moved < 1e-4);
         std::vector<Contact> found = read_state(out).state.contacts, expected = from.contacts;
-        std::sort(found.begin(), found.end());
-        std::sort(expected.begin(), expected.end());
+        std::ranges::sort(found);
+        std::ranges::sort(expected);
         BOOST_TEST((found == expected));
         expect(run({"certify", out, "-o", folder.at("c.json")}), 0);
     }

@@ -41,7 +41,7 @@ BOOST_FIXTURE_TEST_CASE(runs_that_choose_are_the_same_resumed_and_with_any_numbe
     expect(run({"run", scene, "-o", whole.string(), "-q", "--threads", "1"}), 0);
     const std::string events = scratch::read(whole / "events.jsonl");
     BOOST_TEST(contains(events, "\"choice\":"));
-    const auto arcs = std::count(events.begin(), events.end(), '\n');
+    const auto arcs = std::ranges::count(events, '\n');
     for (const int threads : {1, 2, 3}) {
         BOOST_TEST_INFO_SCOPE(threads << " threads");
         const fs::path out = folder / ("cut" + std::to_string(threads));

@@ -41,7 +41,7 @@ BOOST_AUTO_TEST_CASE(every_law_is_prepared_and_run, *boost::unit_test::label("sl
         const std::string text = scene(law, 3);
         expect(run_scene(folder, law == from_file ? scratch::replaced(text, "disks = 100\n", "") : text), 0);
         const std::string rows = scratch::read(folder / "run/equilibria.csv");
-        BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 5); // names, the start, three equilibria
+        BOOST_TEST(std::ranges::count(rows, '\n') == 5); // names, the start, three equilibria
         expect(run({"verify", folder.at("run")}), 0);
     }
 }
@@ -173,7 +173,6 @@ BOOST_FIXTURE_TEST_CASE(every_tie_offers_a_jitter, scratch::InFolder) {
     scratch::write(folder / "zero.json", scratch::replaced(state, "[1.0, 1.0]", "[1.0, 0.5]"));
     expect(run_scene(folder, scene_from("zero.json", "[[programme]]\ndo = \"down\"\nequilibria = 1\n")), 2,
            {"tie: ", "the force is exactly 0", given});
-    scratch::write(folder / "square.csv", "x,y,r\n1,1,1\n3,1,1\n1,3,1\n3,3,1\n");
     const std::string out = folder.at("s.json");
     expect(run({"import", folder.file("square.csv", "x,y,r\n1,1,1\n3,1,1\n1,3,1\n3,3,1\n"), "--box", "0:4,0:4",
                 "--contacts", "nearest", "-o", out}),

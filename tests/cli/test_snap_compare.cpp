@@ -100,7 +100,6 @@ BOOST_FIXTURE_TEST_CASE(contacts_are_a_dump_or_a_table_and_each_pair_stands_ther
     const std::size_t names = dump.find("ITEM: ENTRIES"), first = dump.find('\n', names) + 1;
     const std::string rows = dump.substr(first, dump.find("ITEM:", first) - first), header = "i j force\n";
     const auto made = [&](const std::string& text) {
-        scratch::write(folder / "pairs.txt", text);
         return run({"snap", scratch::data("series/disks.dump"), "--frame", "0", "--box", first_box, "--contacts",
                     folder.file("pairs.txt", text), "--contact-columns", "i,j,force", "-o", folder.at("state.json")});
     };

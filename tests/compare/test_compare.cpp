@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(frames_whose_stresses_all_vary_are_placed_by_their_ratio) {
         const series::Lines header = series::words_of(dump[Copy::line(dump, 0, 0) - 1]);
         std::vector<std::size_t> out;
         for (const std::string& name : names) {
-            out.push_back(static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin()) - 2);
+            out.push_back(static_cast<std::size_t>(std::ranges::find(header, name) - header.begin()) - 2);
         }
         return out;
     };
@@ -247,7 +247,7 @@ BOOST_AUTO_TEST_CASE(frames_that_are_all_the_exact_equilibrium_give_0) {
     BOOST_TEST(result.status == 0);
     BOOST_TEST(!result.departure.has_value());
     const std::string text = compare::frames_csv(result);
-    BOOST_TEST(std::count(text.begin(), text.end(), '\n') == 4);
+    BOOST_TEST(std::ranges::count(text, '\n') == 4);
     // Another order of the rows of a dump is the same frame.
     Copy turned(3);
     std::swap(turned.disk(1, 3), turned.disk(1, 60));

@@ -1,6 +1,7 @@
 // Series of frames of soft spheres, made from the exact run by overlaps: every frame is the exact equilibrium.
 #include "compare/series_copy.hpp"
 #include "support/bad_input.hpp"
+#include "support/newton.hpp"
 #include "support/spheres.hpp"
 
 using namespace isostat;
@@ -17,7 +18,8 @@ constexpr std::array law_names{"linear", "hertz"};
 /// The place where the gaps of the contacts are minus the overlaps.
 Packing overlapping(const State& state, const std::vector<double>& overlaps) {
     Packing packing = state.packing;
-    const DofMap dofs(packing);
+    std::vector<double> gaps(overlaps.size());
+    std::ranges::transform(overlaps, gaps.begin(), std::negate());
     for (int turn = 0; turn < 5; ++turn) {
         crafted::step_to_gaps(packing, state.contacts, gaps);
     }

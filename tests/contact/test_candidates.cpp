@@ -30,7 +30,7 @@ struct ExactGaps : Geometry<mpq_class> {
 /// Two-sided: nothing below the reach is missing, nothing above it (beyond rounding) is listed.
 void check_against_every_pair(const Packing& packing, double fraction) {
     const CandidateList list = find_candidates(packing, fraction);
-    BOOST_TEST(std::is_sorted(list.contacts.begin(), list.contacts.end()));
+    BOOST_TEST(std::ranges::is_sorted(list.contacts));
     BOOST_TEST(list.reach == fraction * packing.min_radius());
     const std::set<Contact> listed(list.contacts.begin(), list.contacts.end());
     BOOST_TEST(listed.size() == list.contacts.size());
@@ -52,7 +52,7 @@ Verdict exact_verdict(const Packing& packing, double allowance) {
     const ExactGaps exact(packing);
     const auto pairs = all_pairs(packing);
     const bool overlaps =
-        std::any_of(pairs.begin(), pairs.end(), [&](const Contact& c) { return exact.sign_beyond(c, -allowance) < 0; });
+        std::ranges::any_of(pairs, [&](const Contact& c) { return exact.sign_beyond(c, -allowance) < 0; });
     return overlaps ? Verdict::refuted : Verdict::proved;
 }
 
@@ -241,7 +241,7 @@ BOOST_AUTO_TEST_CASE(the_pair_list_is_the_one_of_brute_force) {
 BOOST_AUTO_TEST_CASE(extreme_units_and_size_ratios_fall_back_on_the_grid) {
     for (const double scale : {0x1p-1000, 0x1p-500, 0x1p-40, 1.0, 0x1p40, 0x1p500, 0x1p1000}) {
         Packing packing = square_lattice(4, 2.25 * scale);
-        std::fill(packing.radius.begin(), packing.radius.end(), scale);
+        std::ranges::fill(packing.radius, scale);
         check_against_every_pair(packing, 0.82);
         check_verdict(packing, 0);
         packing.q[1] = packing.q[3] - 2 * scale; // tangent to the next one

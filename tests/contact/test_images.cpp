@@ -34,7 +34,7 @@ std::vector<Contact> by_definition(const Packing& packing, double reach) {
             }
         }
     }
-    std::sort(pairs.begin(), pairs.end());
+    std::ranges::sort(pairs);
     return pairs;
 }
 
@@ -73,7 +73,7 @@ Packing random_cell(const Draw& draw, std::mt19937_64& random) {
 }
 
 bool all_there(const std::vector<Contact>& wanted, const std::vector<Contact>& found) {
-    return std::includes(found.begin(), found.end(), wanted.begin(), wanted.end());
+    return std::ranges::includes(found, wanted);
 }
 
 /// Bodies of three members each, two of which overlap deeply, at random places: bodies overlap too.
@@ -112,7 +112,7 @@ BOOST_AUTO_TEST_CASE(a_pair_many_periods_apart_is_listed_whatever_its_sums_lose)
     const double computed = isostat::gap(packing, pair);
     BOOST_TEST(computed == 0x1.6666666667584p+0 - 1);
     const auto near = isostat::near_pairs(packing, computed - 8e-13).pairs;
-    BOOST_TEST((std::find(near.begin(), near.end(), pair) != near.end()));
+    BOOST_TEST((std::ranges::find(near, pair) != near.end()));
 }
 
 BOOST_AUTO_TEST_CASE(pairs_are_all_found_in_cells_of_one_disk_and_more) {
@@ -140,7 +140,7 @@ BOOST_AUTO_TEST_CASE(a_flat_cell_has_images_several_periods_away) {
     const auto found = isostat::near_pairs(state.packing, 0.5).pairs;
     const std::vector<Contact> wanted = by_definition(state.packing, 0.5);
     BOOST_TEST((found == wanted));
-    BOOST_TEST((std::find(found.begin(), found.end(), cells::across(0, 0, -2, 1)) != found.end()));
+    BOOST_TEST((std::ranges::find(found, cells::across(0, 0, -2, 1)) != found.end()));
 }
 
 BOOST_AUTO_TEST_CASE(overlaps_with_images_are_found) {
@@ -225,8 +225,8 @@ BOOST_AUTO_TEST_CASE(a_member_and_the_image_of_another_are_a_pair) {
     p.cell.move(true, true);
     p.bars = {{0, 1, 1}};
     const std::vector<Contact> found = isostat::near_pairs(p, 0.3).pairs;
-    BOOST_TEST((std::find(found.begin(), found.end(), isostat::pair_of(0, 1, {{-1, 0, 0}})) != found.end()));
-    BOOST_TEST((std::find(found.begin(), found.end(), isostat::pair_of(0, 1)) == found.end()));
+    BOOST_TEST((std::ranges::find(found, isostat::pair_of(0, 1, {{-1, 0, 0}})) != found.end()));
+    BOOST_TEST((std::ranges::find(found, isostat::pair_of(0, 1)) == found.end()));
 }
 
 BOOST_AUTO_TEST_CASE(a_single_body_has_no_pair_but_with_the_walls) {

@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(a_pyramid_has_unique_sums_of_forces_and_a_range_though_its_
         }
         BOOST_TEST((top == Number(2) * (big + r) / h));
         BOOST_TEST((along == Number(3) - Number(2) * r / (Number(2) * h)));
-        BOOST_TEST(std::all_of(changed.begin(), changed.end(), [](const Number& x) { return x.is_zero(); }));
+        BOOST_TEST(std::ranges::all_of(changed, [](const Number& x) { return x.is_zero(); }));
         BOOST_REQUIRE_EQUAL(seen.ranges.size(), 3U);
         const auto& range = seen.ranges.back();
         BOOST_TEST((range.least && range.least->is_zero()));
@@ -260,7 +260,7 @@ BOOST_AUTO_TEST_CASE(a_sphere_is_held_where_0_is_inside_the_hull_of_its_normals)
         }
         const Inspection seen = inspect_contacts(packing, contacts);
         BOOST_TEST((seen.hold[0] == c.hold));
-        BOOST_TEST(static_cast<std::size_t>(std::count(seen.carrying.begin(), seen.carrying.end(), 1)) == c.carrying);
+        BOOST_TEST(static_cast<std::size_t>(std::ranges::count(seen.carrying, 1)) == c.carrying);
     }
 }
 

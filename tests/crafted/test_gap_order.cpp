@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(peeling_agrees_with_excluding_contacts_for_every_initial_pa
             packing.fixed[0] = packing.fixed[5] = 1;
         }
         std::vector<Contact> contacts = all_candidates(packing, 0.25);
-        std::shuffle(contacts.begin(), contacts.end(), random);
+        std::ranges::shuffle(contacts, random);
         const Peeling peeling = peel(packing, contacts);
         const std::size_t n = packing.radius.size();
         for (std::size_t m = 0; m <= contacts.size(); ++m) {

@@ -207,7 +207,7 @@ BOOST_AUTO_TEST_CASE(relabelling_scaling_and_turning_leave_the_counts_alone) {
         for (std::size_t i = 0; i < label.size(); ++i) {
             label[i] = i;
         }
-        std::shuffle(label.begin(), label.end(), random);
+        std::ranges::shuffle(label, random);
         const bool turns = packing.walls == isostat::Walls::none() && !packing.cell.any();
         const Number scale = n("7/3"), c = turns ? n("3/5") : Number(1), s = turns ? n("4/5") : Number(0);
         const auto turned = [&](const Number& x, const Number& y) {

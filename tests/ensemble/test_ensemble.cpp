@@ -32,7 +32,7 @@ void same_tables(const fs::path& a, const fs::path& b) {
 }
 
 long lines(const std::string& text) {
-    return std::count(text.begin(), text.end(), '\n');
+    return std::ranges::count(text, '\n');
 }
 
 /// A child process of another process that runs `word`.
@@ -244,7 +244,7 @@ BOOST_AUTO_TEST_CASE(every_end_is_told_and_none_ends_another) {
     BOOST_TEST(watch.ends.at(5).signal == 0);
     BOOST_TEST(watch.ends.at(6).signal == SIGKILL);
     std::vector<std::size_t> done = watch.done;
-    std::sort(done.begin(), done.end());
+    std::ranges::sort(done);
     BOOST_TEST((done == std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6, 7}));
 }
 

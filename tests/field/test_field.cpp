@@ -316,7 +316,6 @@ BOOST_FIXTURE_TEST_CASE(kind_8_forces_in_other_units_and_a_column_of_something_e
         const std::string line = table.substr(at, table.find('\n', at) - at);
         distances += row == 0 ? line + "\n" : line.substr(0, line.rfind(',')) + (row % 2 == 0 ? ",2.0\n" : ",2.4\n");
     }
-    scratch::write(folder / "distances.csv", distances);
     const auto found = json_of(in_field("snap", "00_base16.dump",
                                         {"--contacts", folder.file("distances.csv", distances), "--contact-columns",
                                          "id1,id2,fn", "--cell", "tilted", "-o", folder.at("state.json"), "--json"}));

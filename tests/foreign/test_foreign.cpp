@@ -40,12 +40,8 @@ ForeignOptions stated(SizeMeaning meaning, const std::string& column, double val
 }
 
 bool says(const ForeignPacking& packing, const std::string& words) {
-    for (const std::string& note : packing.notes) {
-        if (note.find(words) != std::string::npos) {
-            return true;
-        }
-    }
-    return false;
+    return std::ranges::any_of(packing.notes,
+                               [&](const std::string& note) { return note.find(words) != std::string::npos; });
 }
 
 /// The two disks of all the samples, whatever their order.

@@ -117,7 +117,7 @@ BOOST_AUTO_TEST_CASE(every_row_has_the_columns_that_the_first_line_names_whateve
         three->assign(3, 0.5);
     }
     record.touching = 7;
-    const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
+    const auto commas = [](const std::string& line) { return std::ranges::count(line, ','); };
     for (const bool tilt : {false, true}) {
         for (const bool touching : {false, true}) {
             const std::string header = equilibria_header({tilt, touching});

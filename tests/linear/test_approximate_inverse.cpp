@@ -43,7 +43,7 @@ std::vector<double> some_numbers(std::size_t n) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> number(-1, 1);
     std::vector<double> x(n);
-    std::generate(x.begin(), x.end(), [&] { return number(random); });
+    std::ranges::generate(x, [&] { return number(random); });
     return x;
 }
 
@@ -53,7 +53,7 @@ sparse::Matrix<double> with_exchanges(const sparse::Matrix<double>& h, const std
     next.rows = next.cols = h.rows;
     next.start.push_back(0);
     for (int l = 0; l < h.cols; ++l) {
-        const bool exchanged = std::find(slots.begin(), slots.end(), l) != slots.end();
+        const bool exchanged = std::ranges::find(slots, l) != slots.end();
         const auto c = static_cast<std::size_t>(l);
         for (int e = h.start[c]; e < h.start[c + 1]; ++e) {
             const auto at = static_cast<std::size_t>(e);

@@ -34,11 +34,8 @@ struct Start {
 /// By definition.
 std::vector<Contact> candidates_without(const CandidateList& candidates, const std::vector<Contact>& contacts) {
     std::vector<Contact> open;
-    for (const Contact& c : candidates.contacts) {
-        if (std::find(contacts.begin(), contacts.end(), c) == contacts.end()) {
-            open.push_back(c);
-        }
-    }
+    std::ranges::copy_if(candidates.contacts, std::back_inserter(open),
+                         [&](const Contact& c) { return std::ranges::find(contacts, c) == contacts.end(); });
     return open;
 }
 

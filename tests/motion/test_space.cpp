@@ -1,10 +1,12 @@
 // Constants of enclosed arcs that are larger for spheres than for disks: what really happens comes near them.
 #include "contact/separation.hpp"
+#include "core/dot.hpp"
 #include "core/roundoff.hpp"
 #include "motion/curve_piece.hpp"
 #include "oracle/random.hpp"
 #include "oracle/truth.hpp"
 #include "support/free_grains.hpp"
+#include "support/spheres.hpp"
 #include "support/test.hpp"
 
 using namespace isostat;
@@ -26,9 +28,7 @@ struct RowOfImage {
         packing.cell.repeat();
         packing.cell.move(true, true);
         packing.q.resize(packing.coordinate_count());
-        for (double& x : packing.q) {
-            x = random.real(0.5, 1);
-        }
+        std::ranges::generate(packing.q, [&] { return random.real(0.5, 1); });
         snap_to_grid(packing);
         Image image;
         std::fill_n(image.m.begin(), dimension, static_cast<std::int8_t>(m));
@@ -141,8 +141,8 @@ BOOST_AUTO_TEST_CASE(coefficients_in_cells_of_spheres_are_on_a_grid_of_their_own
     BOOST_TEST(piece.coefficients().size() > 3U);
     for (const std::vector<double>& a : piece.coefficients()) {
         int exponent = 0;
-        std::frexp(largest, &exponent);
-        BOOST_TEST(std::all_of(a.begin(), a.end(), [exponent](double x) {
+        std::frexp(largest(a), &exponent);
+        BOOST_TEST(std::ranges::all_of(a, [exponent](double x) {
             const double steps = std::ldexp(x, 49 - exponent);
             return steps == std::nearbyint(steps);
         }));

@@ -80,7 +80,7 @@ void is_proved_vertex_of_spheres(const State& state, std::size_t dofs) {
     BOOST_TEST(state.load.infinitesimal.size() == 3 * packing.radius.size());
     const double rounding = 16 * grid_step(packing);
     for (const Contact& pair : oracle::all_pairs(packing, 2)) {
-        const bool closed = std::binary_search(state.contacts.begin(), state.contacts.end(), pair);
+        const bool closed = std::ranges::binary_search(state.contacts, pair);
         BOOST_TEST((gap(packing, pair) <= rounding) == closed, to_string(pair));
         BOOST_TEST(gap(packing, pair) > -rounding, to_string(pair));
     }
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_in_a_channel) {
     const State state = vertex_near(soft, options);
     BOOST_TEST(state.contacts.size() == 2 * state.packing.radius.size() + 1);
     BOOST_TEST((certify(state).verdict == Verdict::proved));
-    const auto some = [&](auto holds) { return std::any_of(state.contacts.begin(), state.contacts.end(), holds); };
+    const auto some = [&](auto holds) { return std::ranges::any_of(state.contacts, holds); };
     BOOST_TEST(some([](const Contact& c) { return !c.image.is_here(); }));
     BOOST_TEST(some([](const Contact& c) { return c.kind == ContactKind::upper_wall; }));
     BOOST_TEST(some([](const Contact& c) { return c.kind == ContactKind::lower_wall; }));

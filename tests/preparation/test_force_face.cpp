@@ -9,7 +9,7 @@ namespace {
 
 /// Least and most force of a pair.
 std::pair<double, double> force_between(const ForceFace& face, const Contact& pair) {
-    const auto at = std::find(face.pairs.begin(), face.pairs.end(), pair);
+    const auto at = std::ranges::find(face.pairs, pair);
     BOOST_TEST_REQUIRE((at != face.pairs.end()));
     const auto l = static_cast<std::size_t>(at - face.pairs.begin());
     return {face.least[l], face.most[l]};
@@ -23,8 +23,7 @@ void is_between(const ForceFace& face, const Contact& pair, double least, double
 
 std::pair<std::vector<Contact>, std::vector<Contact>> split(std::vector<Contact> all,
                                                             const std::vector<Contact>& touching) {
-    std::erase_if(all,
-                  [&](const Contact& c) { return std::find(touching.begin(), touching.end(), c) != touching.end(); });
+    std::erase_if(all, [&](const Contact& c) { return std::ranges::find(touching, c) != touching.end(); });
     return {all, touching};
 }
 

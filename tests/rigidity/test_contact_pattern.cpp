@@ -44,7 +44,7 @@ BOOST_AUTO_TEST_CASE(entries_follow_from_the_contacts_not_from_the_stored_coordi
 BOOST_AUTO_TEST_CASE(what_vanishes_is_told_by_indices_and_by_equal_radii_on_one_wall) {
     // In the order left-0, bottom-0, 0-1, bottom-1, right-1, top-0 of the sorted list: found by contact.
     const auto bottom_of_second = [](const State& state, bool perturbed) {
-        const auto found = std::find(state.contacts.begin(), state.contacts.end(), bottom(1));
+        const auto found = std::ranges::find(state.contacts, bottom(1));
         return carrying(state, perturbed)[static_cast<std::size_t>(found - state.contacts.begin())] != 0;
     };
     // Equal radii: the pair is level at every true vertex, and the right wall presses on the left one alone.

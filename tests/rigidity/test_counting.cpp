@@ -327,9 +327,9 @@ BOOST_AUTO_TEST_CASE(exchanging_a_row_multiplies_the_determinant_by_the_closing_
         std::vector<std::vector<mpq_class>> g(n, std::vector<mpq_class>(n));
         std::vector<mpq_class> row(n);
         for (auto& r : g) {
-            std::generate(r.begin(), r.end(), entry);
+            std::ranges::generate(r, entry);
         }
-        std::generate(row.begin(), row.end(), entry);
+        std::ranges::generate(row, entry);
         const mpq_class det = determinant(g);
         if (det == 0) {
             continue;

@@ -101,8 +101,7 @@ BOOST_AUTO_TEST_CASE(a_sphere_among_its_like_on_a_wall_is_held_by_a_contact_with
             radius *= swollen;
         }
         BOOST_TEST(soft.contacts.size() == 261U);
-        BOOST_TEST(std::count(soft.contacts.begin(), soft.contacts.end(), Contact(ContactKind::lower_wall, 12, 2)) ==
-                   1);
+        BOOST_TEST(std::ranges::count(soft.contacts, Contact(ContactKind::lower_wall, 12, 2)) == 1);
         const Snap found = compare::snap(soft);
         BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
         BOOST_TEST(found.rattlers.size() == 14U);
@@ -264,7 +263,7 @@ BOOST_AUTO_TEST_CASE(lists_without_a_vertex_are_refused_with_the_reason) {
     near.i = exact.disks[static_cast<std::size_t>(near.i)];
     near.j = near.kind == ContactKind::disk_disk ? exact.disks[static_cast<std::size_t>(near.j)] : near.j;
     soft.contacts.push_back(near);
-    std::sort(soft.contacts.begin(), soft.contacts.end());
+    std::ranges::sort(soft.contacts);
     const Snap more = compare::snap(soft);
     BOOST_TEST((more.outcome == SnapOutcome::hyperstatic));
     BOOST_TEST(more.reason.find("h = 1") != std::string::npos, more.reason);
@@ -300,7 +299,7 @@ BOOST_AUTO_TEST_CASE(a_rattler_without_room_is_no_vertex) {
         }
         BOOST_TEST((outcomes.front() == SnapOutcome::vertex));
         BOOST_TEST((outcomes.back() == SnapOutcome::refuted));
-        BOOST_TEST(std::is_sorted(outcomes.begin(), outcomes.end(), [](SnapOutcome a, SnapOutcome b) {
+        BOOST_TEST(std::ranges::is_sorted(outcomes, [](SnapOutcome a, SnapOutcome b) {
             return a == SnapOutcome::vertex &&
                    b == SnapOutcome::refuted; // once there is no room, there is none for more
         }));

@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(forces_at_a_limit_are_known_no_better_than_the_limit) {
             double without = with;
             for (int l = 0; l < loaded.structure.size() && !limit.unbounded; ++l) {
                 const ContactId id(l);
-                const bool member = std::count(limit.tie_class.begin(), limit.tie_class.end(), id) > 0;
+                const bool member = std::ranges::count(limit.tie_class, id) > 0;
                 if (member || loaded.statics.is_structural_zero(id)) {
                     continue;
                 }
@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(two_equal_tractions_are_a_tie_and_unequal_ones_are_ordered)
                 tie.failure().message().find("1-2") != std::string::npos),
                tie.failure().message());
     std::vector<Contact> tied = tie.failure().contacts();
-    std::sort(tied.begin(), tied.end());
+    std::ranges::sort(tied);
     BOOST_TEST((tied == std::vector<Contact>{{ContactKind::disk_disk, 0, 2}, {ContactKind::disk_disk, 1, 2}}));
     BOOST_TEST((equal.statics.rung() == Rung::exact)); // a tie is proved, not given up
     BOOST_TEST((tie.failure().message().find("exactly equal") != std::string::npos), tie.failure().message());
@@ -164,9 +164,8 @@ BOOST_AUTO_TEST_CASE(the_rules_choose_what_their_names_say) {
     }
     BOOST_TEST(drawn.size() == negative.size());
     const auto& contacts = loaded.state.contacts;
-    const ContactId first = *std::min_element(negative.begin(), negative.end(), [&](ContactId a, ContactId b) {
-        return contacts[a.index()] < contacts[b.index()];
-    });
+    const ContactId first = *std::ranges::min_element(
+        negative, [&](ContactId a, ContactId b) { return contacts[a.index()] < contacts[b.index()]; });
     BOOST_TEST((choose(OpeningRule::least_index, 7) == first));
 }
 
@@ -207,8 +206,7 @@ BOOST_AUTO_TEST_CASE(a_load_that_no_force_limits_is_unbounded_and_says_so) {
 BOOST_AUTO_TEST_CASE(a_force_that_the_balance_of_the_whole_keeps_constant_gives_no_limit) {
     AtVertex notch(isostat::test::notch(1, 2), true, {.exact_size = 0});
     const std::vector<Contact>& contacts = notch.state.contacts;
-    const ContactId at_left(
-        static_cast<std::size_t>(std::find(contacts.begin(), contacts.end(), left(0)) - contacts.begin()));
+    const ContactId at_left(static_cast<std::size_t>(std::ranges::find(contacts, left(0)) - contacts.begin()));
     BOOST_TEST(!notch.statics.slope_is_zero(at_left));
     BOOST_TEST(notch.statics.slope_cancels(at_left));
     const auto up = find_limit(notch.statics, 2, +1);
@@ -220,7 +218,7 @@ BOOST_AUTO_TEST_CASE(a_force_that_the_balance_of_the_whole_keeps_constant_gives_
 BOOST_AUTO_TEST_CASE(two_members_that_lie_level_bear_one_force_and_the_infinitesimal_loads_order_them) {
     const auto mates = [](const State& state) {
         AtVertex at(state);
-        const auto found = std::find(at.state.contacts.begin(), at.state.contacts.end(), pair(0, 2));
+        const auto found = std::ranges::find(at.state.contacts, pair(0, 2));
         std::vector<Contact> equal;
         for (const EqualForce& e :
              equal_by_place(at.statics, ContactId(static_cast<std::size_t>(found - at.state.contacts.begin())))) {
@@ -272,10 +270,10 @@ BOOST_AUTO_TEST_CASE(slopes_that_sums_show_to_vanish_do) {
         State state = in_box(places, 10, 10, 1, 1, {});
         state.packing.fixed.assign(static_cast<std::size_t>(disks), 0);
         state.packing.fixed[0] = attempt % 4 == 0 ? 1 : 0;
-        std::shuffle(others.begin(), others.end(), random);
+        std::ranges::shuffle(others, random);
         const DofMap dofs(state.packing);
         list.insert(list.end(), others.begin(), others.begin() + dofs.dof_count() - 1);
-        std::sort(list.begin(), list.end());
+        std::ranges::sort(list);
         state.contacts = list;
         if (!IsostaticStructure::prove(state.packing, list).ok()) {
             continue;

@@ -37,7 +37,7 @@ State row_under_traction(int disks) {
 }
 
 ContactId find(const State& state, const Contact& contact) {
-    const auto at = std::find(state.contacts.begin(), state.contacts.end(), contact);
+    const auto at = std::ranges::find(state.contacts, contact);
     BOOST_TEST_REQUIRE((at != state.contacts.end()));
     return ContactId(static_cast<std::size_t>(at - state.contacts.begin()));
 }
@@ -131,7 +131,7 @@ struct SlowTurn {
             for (std::size_t l = 0; l < v.state.contacts.size(); ++l) {
                 const Contact& c = v.state.contacts[l];
                 if (c.kind == ContactKind::held || nothing[l] != 0 ||
-                    std::find(without.begin(), without.end(), ContactId(l)) != without.end()) {
+                    std::ranges::find(without, ContactId(l)) != without.end()) {
                     continue;
                 }
                 const auto i = static_cast<std::size_t>(c.i);
@@ -144,7 +144,7 @@ struct SlowTurn {
                 }
             }
         }
-        return static_cast<int>(std::count(seen.begin(), seen.end(), 0));
+        return static_cast<int>(std::ranges::count(seen, 0));
     }
 
     /// Both contacts together cut free disks off, neither of them alone.
@@ -295,7 +295,7 @@ BOOST_AUTO_TEST_CASE(a_row_of_two_is_one_strut_up_to_the_disk_that_another_hold_
 BOOST_AUTO_TEST_CASE(the_load_on_a_long_strut_is_bounded_with_the_rounding_of_its_sum) {
     constexpr int disks = 4000;
     State state = row_under_traction(disks);
-    std::fill(state.load.infinitesimal.begin(), state.load.infinitesimal.end(), 0.0);
+    std::ranges::fill(state.load.infinitesimal, 0.0);
     // 1 + 2^-54 is rounded to 1 again and again: the sum in double is -1.3e-13, the true one 0.9e-13.
     for (std::size_t i = 0; i < disks; ++i) {
         state.load.infinitesimal[2 * i] = i == 0 ? 1 : 0x1p-54;

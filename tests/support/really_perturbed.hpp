@@ -3,6 +3,7 @@
 
 #include "statics/first_order_backbone.hpp"
 #include "support/crafted.hpp"
+#include "support/newton.hpp"
 
 namespace crafted {
 

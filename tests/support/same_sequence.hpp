@@ -81,7 +81,7 @@ inline Disguised relabelled(const State& start, unsigned seed) {
         };
     };
     Disguised other = disguised(std::move(state), relabel(inverse), relabel(label));
-    std::reverse(other.state.contacts.begin(), other.state.contacts.end());
+    std::ranges::reverse(other.state.contacts);
     return other;
 }
 

@@ -2,6 +2,7 @@
 // Enclosures of vertices with bars against the vertex to 200 digits.
 // Bounds for contact matrices with more columns than rows.
 #include "contact/candidates.hpp"
+#include "core/dot.hpp"
 #include "core/roundoff.hpp"
 #include "oracle/random.hpp"
 #include "oracle/truth.hpp"
@@ -9,6 +10,7 @@
 #include "support/clumps.hpp"
 #include "support/crafted.hpp"
 #include "support/free_grains.hpp"
+#include "support/regular.hpp"
 #include "support/test.hpp"
 #include "verified/configuration.hpp"
 #include "verified/force_ladder.hpp"
@@ -33,7 +35,7 @@ using Vector = oracle::Truth::Vector;
 
 void scale(Vector& x) {
     const Real size = sqrt(std::inner_product(x.begin(), x.end(), x.begin(), Real(0)));
-    std::for_each(x.begin(), x.end(), [&size](Real& c) { c /= size; });
+    std::ranges::for_each(x, [&size](Real& c) { c /= size; });
 }
 
 /// A lower bound of |H^-1|_2 that converges to it: power iteration on H^-T H^-1.
@@ -235,12 +237,9 @@ BOOST_AUTO_TEST_CASE(the_newton_step_encloses_the_vertex_and_hardly_more) {
             enclose_vertex_double_double(moved.packing, at.structure, at.factorisation, at.inverse);
         BOOST_TEST_REQUIRE((step.verdict == Verdict::proved));
         BOOST_TEST_REQUIRE((fine.rung == Rung::double_double));
-        double square = 0;
-        for (const double c : fine.correction) {
-            square += c * c;
-        }
-        BOOST_TEST(std::sqrt(square) <= step.radius + fine.radius);
-        BOOST_TEST(step.radius < 1.6 * std::sqrt(square));
+        const double moved_by = isostat::euclidean_norm(fine.correction);
+        BOOST_TEST(moved_by <= step.radius + fine.radius);
+        BOOST_TEST(step.radius < 1.6 * moved_by);
         BOOST_TEST(step.radius < 0.1 * enclose_vertex(moved.packing, at.structure, at.inverse).radius);
     }
 }
@@ -251,9 +250,7 @@ BOOST_AUTO_TEST_CASE(forces_turn_with_their_contacts_within_the_bound_and_reach_
     const sparse::Matrix<double> h = contact_matrix(state.packing, dofs, state.contacts);
     oracle::Random random(5);
     std::vector<double> x(state.contacts.size());
-    for (double& c : x) {
-        c = random.real(-1, 1);
-    }
+    std::ranges::generate(x, [&] { return random.real(-1, 1); });
     x[7] = 20; // the worst disks are at one of its ends
     const double rate = turn_of_forces(state.packing, state.contacts, x);
     double largest = 0;

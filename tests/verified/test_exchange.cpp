@@ -100,8 +100,7 @@ BOOST_AUTO_TEST_CASE(without_motion_a_bound_is_carried_with_little_loss_and_a_wr
     Exchange from;
     // A held coordinate in place of a contact, the packing unmoved: the kept rows are the same.
     const std::vector<double> v = from.factorisation.approximate().mechanism(5);
-    const auto fastest =
-        std::max_element(v.begin(), v.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto fastest = std::ranges::max_element(v, [](double a, double b) { return std::abs(a) < std::abs(b); });
     const Contact held{ContactKind::held, static_cast<int>(fastest - v.begin()), 0};
     const auto next = IsostaticStructure::exchange(from.structure, from.state.packing, ContactId(5), held);
     BOOST_TEST_REQUIRE(next.has_value());
@@ -115,9 +114,7 @@ BOOST_AUTO_TEST_CASE(without_motion_a_bound_is_carried_with_little_loss_and_a_wr
     // A guess that is no mechanism at all is refined or refused; what comes out is still a bound.
     oracle::Random random(5);
     std::vector<double> wrong(v.size());
-    for (double& c : wrong) {
-        c = static_cast<double>(random.integer(2001)) / 1000 - 1;
-    }
+    std::ranges::generate(wrong, [&] { return static_cast<double>(random.integer(2001)) / 1000 - 1; });
     const auto still = carry_bound(from.structure, from.inverse, *next, approximate, wrong);
     BOOST_TEST((!still || still->bound.sigma_min < sigma * 1.001));
 }

@@ -59,7 +59,7 @@ Real lipschitz_of(const State& state) {
             smallest = smallest < 0 || d < smallest ? d : smallest;
         }
     }
-    return 2 * sqrt(Real(*std::max_element(count.begin(), count.end()))) / smallest;
+    return 2 * sqrt(Real(*std::ranges::max_element(count))) / smallest;
 }
 
 /// |F|_2 of T9.
@@ -153,7 +153,7 @@ BOOST_AUTO_TEST_CASE(rounding_of_entries_is_that_of_V1) {
             most = std::max(most, column);
         }
         check_above(rounding_of_entries(h, state.packing.dimension),
-                    5 * u * sqrt(most * *std::max_element(row.begin(), row.end())), 0.01);
+                    5 * u * sqrt(most * *std::ranges::max_element(row)), 0.01);
     }
 }
 
@@ -192,7 +192,7 @@ BOOST_AUTO_TEST_CASE(rates_of_change_are_those_of_V4_and_V6) {
                 weight[static_cast<std::size_t>(c.j)] += w;
             }
         }
-        const Real heaviest = *std::max_element(weight.begin(), weight.end());
+        const Real heaviest = *std::ranges::max_element(weight);
         check_above(turn_of_forces(state.packing, state.contacts, x), 2 * heaviest / Real("0.99"), 0.02);
     }
 }
@@ -225,7 +225,7 @@ BOOST_AUTO_TEST_CASE(rates_of_change_in_cells_are_those_of_C5) {
             fourth[disks] += m2 == 0 ? Real(0) : Real(w2 * w2 / (d * d));
             turn[disks] += part * m * ((own ? 0 : 2) + m);
         }
-        const auto largest = [](const std::vector<Real>& v) { return *std::max_element(v.begin(), v.end()); };
+        const auto largest = [](const std::vector<Real>& v) { return *std::ranges::max_element(v); };
         check_above(lipschitz(state.packing, state.contacts), sqrt(largest(fourth)), 1e-8);
         check_above(turn_of_forces(state.packing, state.contacts, x), largest(turn) / Real("0.99"), 0.03);
     }

@@ -35,7 +35,7 @@ oracle::SquareMatrix<Exact> exact_contact_matrix_of(const State& state) {
         if (state.contacts[l].kind == ContactKind::disk_disk) {
             normal = exact_separation(state.packing, state.contacts[l]);
             const Exact distance = sqrt(square_of(normal));
-            std::for_each(normal.begin(), normal.end(), [&](Exact& c) { c /= distance; });
+            std::ranges::for_each(normal, [&](Exact& c) { c /= distance; });
         }
         Separation(state.contacts[l], state.packing.layout())
             .for_each_entry(dofs, normal,
@@ -146,7 +146,7 @@ State structure_in_space(std::uint64_t seed, bool cell) {
                               : i > j       ? Contact(ContactKind::lower_wall, i, random.integer(3))
                                             : Contact(ContactKind::upper_wall, i, random.integer(3));
         const bool nothing = drawn.kind == ContactKind::disk_disk && drawn.i == drawn.j;
-        if (!nothing && std::find(state.contacts.begin(), state.contacts.end(), drawn) == state.contacts.end()) {
+        if (!nothing && std::ranges::find(state.contacts, drawn) == state.contacts.end()) {
             state.contacts.push_back(drawn);
         }
     }
@@ -171,7 +171,7 @@ bool bounds_hold(const State& state) {
     BOOST_TEST(at.inverse.sigma_min >= 0.05 * smallest);
     oracle::Random random(3);
     std::vector<double> load(state.contacts.size());
-    std::generate(load.begin(), load.end(), [&] { return random.real(-1, 1); });
+    std::ranges::generate(load, [&] { return random.real(-1, 1); });
     const ForceSolution solution = solve_forces(at.structure, at.factorisation, at.inverse, load);
     BOOST_TEST_REQUIRE(h.factorise());
     const std::vector<Exact> exact = h.solve(std::vector<Exact>(load.begin(), load.end()));
@@ -231,7 +231,7 @@ BOOST_AUTO_TEST_CASE(a_separation_through_an_image_in_space_changes_at_the_rate_
         Packing packing = free_grains({1, 1}, {}, 3);
         packing.cell.repeat();
         packing.q.resize(packing.coordinate_count());
-        std::generate(packing.q.begin(), packing.q.end(), [&] { return random.real(-1, 1); });
+        std::ranges::generate(packing.q, [&] { return random.real(-1, 1); });
         const auto m = [&] { return static_cast<std::int8_t>(random.integer(7) - 3); };
         const Contact pair(ContactKind::disk_disk, 0, 1, {{m(), m(), m()}});
         const GapGradient g = gap_gradient(packing, pair);

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace isostat::answers {
 
@@ -177,13 +178,9 @@ Told told_of(const crafted::Plateau& plateau) {
             (in_widest(range) ? out.backbone : out.elsewhere).push_back(range);
         }
     }
-    for (const PlateauRange& range : plateau.ranges_all) {
-        if (range.told && in_widest(range)) {
-            out.all.push_back(range);
-        }
-    }
-    out.special =
-        std::ranges::any_of(plateau.special, [&](const auto& range) { return range.told && in_widest(range); });
+    const auto counts = [&](const PlateauRange& range) { return range.told && in_widest(range); };
+    std::ranges::copy_if(plateau.ranges_all, std::back_inserter(out.all), counts);
+    out.special = std::ranges::any_of(plateau.special, counts);
     return out;
 }
 

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ranges>
 #include <span>
 #include <string_view>
 
@@ -259,14 +260,9 @@ bool foreign::are_upper(const PerAxis<PerAxis<double>>& vectors, std::size_t d) 
 }
 
 const std::vector<std::string>& foreign_formats() {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> all;
-        for (const foreign::Format& format : foreign::formats) {
-            all.emplace_back(format.name);
-        }
-        return all;
-    }();
-    return names;
+    static const auto names = foreign::formats | std::views::transform(&foreign::Format::name);
+    static const std::vector<std::string> all(names.begin(), names.end());
+    return all;
 }
 
 ForeignPacking parse_foreign(const std::string& whole, const std::string& source, const ForeignOptions& options) {

@@ -98,10 +98,6 @@ Json claim(const LoadIntervalClaim& load, int dimension) {
 }
 
 Json claim(const MinimumClaim& minimum, int dimension) {
-    Json held = Json::array();
-    for (const Contact& coordinate : minimum.held) {
-        held.push_back(contact_to_json(coordinate, dimension));
-    }
     return {{"away", number(minimum.away, "minimum.away")},
             {"curvature", number(minimum.curvature, "minimum.curvature")},
             {"held", array_of(minimum.held, [dimension](const Contact& c) { return contact_to_json(c, dimension); })},

@@ -19,9 +19,7 @@ bool lies_within(const Interval& interval, double value) {
 }
 
 Inspection inspected(const State& state) {
-    auto result = inspect_vertex(with_free_motions_held(state));
-    BOOST_TEST_REQUIRE(result.ok(), (result.ok() ? "" : result.failure().message()));
-    return result.value();
+    return required(inspect_vertex(with_free_motions_held(state)));
 }
 
 const std::vector<std::string> unions{"dimer_20_1",  "dimer_20_2",  "dimer_20_3",  "dimer2_20_1", "dimer2_20_2",

@@ -18,13 +18,6 @@ using namespace crafted;
 
 namespace {
 
-State pushed(State state, double size) {
-    for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
-        state.packing.q[k] += size * std::sin(7.0 * static_cast<double>(k));
-    }
-    return state;
-}
-
 void check_above(double value, double least, double slack) {
     BOOST_TEST(value >= least * (1 - 1e-12), value << " is below " << least);
     BOOST_TEST(value <= least * (1 + slack), value << " is far above " << least);

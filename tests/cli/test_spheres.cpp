@@ -103,13 +103,7 @@ BOOST_FIXTURE_TEST_CASE(a_picture_shows_every_sphere_its_forces_and_three_cuts, 
     for (const std::string name : {"box_uniform_30_1", "slab_uniform_30_1", "tri_uniform_30_1"}) {
         expect(run({"report", state_file(folder, name), "-o", folder.at(name)}), 0);
         const std::string svg = scratch::read(folder / name / ("forces_" + name + ".svg"));
-        const auto count = [&svg](const std::string& word) {
-            int found = 0;
-            for (std::size_t at = svg.find(word); at != std::string::npos; at = svg.find(word, at + 1)) {
-                ++found;
-            }
-            return found;
-        };
+        const auto count = [&svg](const std::string& word) { return scratch::count(svg, word); };
         const auto file = isostat::test::read_spheres(name);
         BOOST_TEST(count("class=\"force\"") == file["expected"]["contacts_with_force"].get<int>());
         BOOST_TEST(count("<circle") > 30 + 3 * 5);

@@ -108,10 +108,9 @@ BOOST_AUTO_TEST_CASE(edges_of_spheres_are_all_the_pairs_that_the_grid_finds) {
     for (int trial = 0; trial < isostat::testing::scaled(40); ++trial) {
         const Packing packing = spheres_that_cling(random, trial % 4 == 0 ? trial / 4 % 3 + 1 : 3); // flat ones too
         const double reach = 0.82 * packing.min_radius();
-        const auto edges = near_edges_in_space(packing, reach);
-        BOOST_TEST_REQUIRE(edges.has_value());
-        BOOST_TEST((*edges == pairs_within(packing, reach)));
-        BOOST_TEST(edges->size() + 1 >= packing.radius.size() / 2);
+        const auto edges = required(near_edges_in_space(packing, reach));
+        BOOST_TEST((edges == pairs_within(packing, reach)));
+        BOOST_TEST(edges.size() + 1 >= packing.radius.size() / 2);
     }
     Packing octahedron = spheres_that_cling(random, 1);
     const double s = std::sqrt(2.0); // of three diagonals with the gap of T6 one is an edge

@@ -82,9 +82,8 @@ void check_edges(const Packing& packing, const Triangulation& triangulation) {
 void check_complete(const Packing& packing, const Triangulation& triangulation) {
     check_edges(packing, triangulation);
     const double reach = 0.82 * packing.min_radius();
-    const auto near = near_edges(packing, reach, triangulation);
-    BOOST_REQUIRE(near.has_value());
-    BOOST_TEST((*near == pairs_within(packing, reach)));
+    const auto near = required(near_edges(packing, reach, triangulation));
+    BOOST_TEST((near == pairs_within(packing, reach)));
 }
 
 } // namespace

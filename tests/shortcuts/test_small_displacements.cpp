@@ -17,10 +17,8 @@ LinearEvent event_of(const State& state, const Contact& opened) {
     const Factorisation factorisation(structure);
     const auto at = std::ranges::find(state.contacts, opened) - state.contacts.begin();
     const auto pairs = find_candidates(state.packing, 0.8).contacts;
-    const auto event =
-        find_linear_event(state.packing, structure, factorisation, ContactId(static_cast<int>(at)), +1, pairs);
-    BOOST_REQUIRE(event.ok());
-    return event.value();
+    return required(
+        find_linear_event(state.packing, structure, factorisation, ContactId(static_cast<int>(at)), +1, pairs));
 }
 
 std::vector<Reference> lifted(const std::vector<double>& q) {

@@ -209,9 +209,8 @@ BOOST_AUTO_TEST_CASE(a_force_that_the_balance_of_the_whole_keeps_constant_gives_
     const ContactId at_left(static_cast<std::size_t>(std::ranges::find(contacts, left(0)) - contacts.begin()));
     BOOST_TEST(!notch.statics.slope_is_zero(at_left));
     BOOST_TEST(notch.statics.slope_cancels(at_left));
-    const auto up = find_limit(notch.statics, 2, +1);
-    BOOST_TEST_REQUIRE(up.ok(), (up.ok() ? "" : up.failure().message()));
-    BOOST_TEST(up.value().unbounded);
+    const auto up = required(find_limit(notch.statics, 2, +1));
+    BOOST_TEST(up.unbounded);
 }
 
 /// A dimer of equal members that lies level hands on what presses at both, in equal parts: a tie for the digits.

@@ -167,10 +167,9 @@ struct SlowTurn {
 
 /// What opens where coordinate 1 has just been held.
 Opening opening_at_turn(AtVertex& v, OpeningRule rule = OpeningRule::most_negative) {
-    const auto decision = decide_opening(v.statics, v.sigma(), rule, {find(v.state, held(1)), {}}, 0);
-    BOOST_TEST_REQUIRE(decision.ok(), why(decision));
-    BOOST_TEST_REQUIRE(decision.value().opening.has_value());
-    return *decision.value().opening;
+    const auto decision = required(decide_opening(v.statics, v.sigma(), rule, {find(v.state, held(1)), {}}, 0));
+    BOOST_TEST_REQUIRE(decision.opening.has_value());
+    return *decision.opening;
 }
 
 } // namespace
@@ -223,10 +222,9 @@ BOOST_AUTO_TEST_CASE(a_turn_at_which_every_force_is_positive_is_no_equilibrium) 
     BOOST_TEST_REQUIRE(!fresh.ok());
     BOOST_TEST((fresh.failure().kind == FailureKind::undecided), fresh.failure().message());
     // Held earlier it has a force, and is let go.
-    const auto later = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {}, 0);
-    BOOST_TEST_REQUIRE(later.ok(), why(later));
-    BOOST_TEST_REQUIRE(later.value().opening.has_value());
-    BOOST_TEST((v.contact(later.value().opening->contact) == held(2)));
+    const auto later = required(decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {}, 0));
+    BOOST_TEST_REQUIRE(later.opening.has_value());
+    BOOST_TEST((v.contact(later.opening->contact) == held(2)));
 }
 
 BOOST_AUTO_TEST_CASE(a_straight_strut_without_a_load_of_its_own_is_a_tie) {
@@ -263,10 +261,10 @@ BOOST_AUTO_TEST_CASE(a_grain_without_force_that_joins_a_strut_to_the_rest_only_p
                 BOOST_TEST_REQUIRE(mates.size() == 1U);
                 BOOST_TEST((v.contact(mates[0].contact) == right(0)));
                 BOOST_TEST(std::abs(mates[0].excess.value - pushed) <= 1e-12);
-                const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {fresh, {}}, 0);
-                BOOST_TEST_REQUIRE(decision.ok(), why(decision));
-                BOOST_TEST((v.contact(decision.value().opening->contact) == (load.to_the_right ? left(0) : right(0))));
-                BOOST_TEST(decision.value().opening->equal_forces);
+                const auto decision =
+                    required(decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {fresh, {}}, 0));
+                BOOST_TEST((v.contact(decision.opening->contact) == (load.to_the_right ? left(0) : right(0))));
+                BOOST_TEST(decision.opening->equal_forces);
             }
             // Held earlier, without a finite force: that hold takes what is added along it.
             state.load.infinitesimal[2] += 0.7;

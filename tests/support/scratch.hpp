@@ -63,6 +63,15 @@ inline std::string replaced(std::string text, const std::string& from, const std
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+/// How often `what` occurs.
+inline int count(const std::string& text, const std::string& what) {
+    int n = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
+        ++n;
+    }
+    return n;
+}
+
 /// Words between blanks.
 inline std::vector<std::string> split(const std::string& text) {
     std::istringstream in(text);

@@ -27,8 +27,13 @@
 #include <utility>
 #include <vector>
 
-/// The value of a result; the test ends with the message of a failure.
+/// What is there; the test ends, with the message of a failure, where nothing is.
 template <class T> T required(isostat::Result<T> result) {
     BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
     return std::move(result.value());
+}
+
+template <class T> T required(std::optional<T> value) {
+    BOOST_REQUIRE(value.has_value());
+    return std::move(*value);
 }

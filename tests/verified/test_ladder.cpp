@@ -166,9 +166,8 @@ BOOST_AUTO_TEST_CASE(a_regular_matrix_is_proved_so_down_to_the_smallest_singular
     for (int decade = 0; decade <= 300; decade += decade < 20 ? 1 : 20) {
         for (const int disks : {1, 2, 7}) {
             const Structure s = needle(disks, std::pow(10.0, -decade));
-            const auto proved = IsostaticStructure::prove(s.packing, s.contacts);
-            BOOST_TEST_REQUIRE(proved.ok());
-            const InverseBound bound = bound_inverse_multiprecision(s.packing, proved.value());
+            const auto proved = required(IsostaticStructure::prove(s.packing, s.contacts));
+            const InverseBound bound = bound_inverse_multiprecision(s.packing, proved);
             BOOST_TEST((bound.verdict == Verdict::proved), "sigma_min ~ 1e-" << decade);
             BOOST_TEST(bound.sigma_min < 10 * std::pow(10.0, -decade));
             check(s, random, count);

@@ -78,7 +78,5 @@ BOOST_AUTO_TEST_CASE(forces_that_only_pull_are_no_face) {
     State state = equal_pair();
     state.load.stress[1] = -1;
     const auto [contacts, touching] = split(state.contacts, {top(1)});
-    const auto face = force_face(state.packing, state.load, contacts, touching);
-    BOOST_TEST_REQUIRE(!face.ok());
-    BOOST_TEST((face.failure().kind == FailureKind::undecided));
+    fails(force_face(state.packing, state.load, contacts, touching), FailureKind::undecided);
 }

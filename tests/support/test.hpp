@@ -37,3 +37,16 @@ template <class T> T required(std::optional<T> value) {
     BOOST_REQUIRE(value.has_value());
     return std::move(*value);
 }
+
+/// There is no answer, for a reason of this kind, whose message has these words.
+template <class T>
+isostat::Failure fails(const isostat::Result<T>& result, isostat::FailureKind kind,
+                       const std::vector<std::string>& words = {}) {
+    BOOST_REQUIRE(!result.ok());
+    const std::string message = result.failure().message();
+    BOOST_TEST((result.failure().kind == kind), message);
+    for (const std::string& word : words) {
+        BOOST_TEST(message.find(word) != std::string::npos, "'" << word << "' is not in: " << message);
+    }
+    return result.failure();
+}

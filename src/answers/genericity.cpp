@@ -222,11 +222,7 @@ Json to_json(const GenericityAnswer& a, const Genericity& result, double size) {
                          {"contacts", contact_names(result.lists[k].contacts, a.original.packing.dimension)}});
     }
     out["networks"] = std::move(lists);
-    Json samples = Json::array();
-    for (const GenericitySample& sample : result.samples) {
-        samples.push_back(sample_json(sample));
-    }
-    out["samples"] = std::move(samples);
+    out["samples"] = json::array_of(result.samples, sample_json);
     return out;
 }
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace isostat::answers {
 
@@ -152,17 +153,15 @@ Json counts_json(const PlateauCounts& c) {
 }
 
 Json ranges_json(const std::vector<PlateauRange>& ranges) {
-    Json out = Json::array();
-    for (const PlateauRange& r : ranges) {
-        out.push_back({{"first", or_null(r.first)},
-                       {"last", or_null(r.last)},
-                       {"open", r.open},
-                       {"told", r.told},
-                       {"N", r.contacts},
-                       {"rattlers", r.rattlers},
-                       {"candidates", r.candidates}});
-    }
-    return out;
+    return json::array_of(ranges, [](const PlateauRange& r) {
+        return Json{{"first", or_null(r.first)},
+                    {"last", or_null(r.last)},
+                    {"open", r.open},
+                    {"told", r.told},
+                    {"N", r.contacts},
+                    {"rattlers", r.rattlers},
+                    {"candidates", r.candidates}};
+    });
 }
 
 } // namespace
@@ -179,13 +178,9 @@ Told told_of(const crafted::Plateau& plateau) {
             (in_widest(range) ? out.backbone : out.elsewhere).push_back(range);
         }
     }
-    for (const PlateauRange& range : plateau.ranges_all) {
-        if (range.told && in_widest(range)) {
-            out.all.push_back(range);
-        }
-    }
-    out.special =
-        std::ranges::any_of(plateau.special, [&](const auto& range) { return range.told && in_widest(range); });
+    const auto counts = [&](const PlateauRange& range) { return range.told && in_widest(range); };
+    std::ranges::copy_if(plateau.ranges_all, std::back_inserter(out.all), counts);
+    out.special = std::ranges::any_of(plateau.special, counts);
     return out;
 }
 
@@ -270,15 +265,13 @@ void add_plateau(Json& out, const PlateauAnswer& answer) {
     out["rank_deficient"] = ranges_json(plateau.special);
     out["no_self_stress_below"] = or_null(plateau.no_self_stress_below);
     out["no_self_stress_open"] = plateau.no_self_stress_open;
-    Json steps = Json::array();
-    for (const PlateauStep& s : plateau.steps) {
-        steps.push_back({{"threshold", or_null(s.threshold)},
-                         {"candidates", s.candidate_count},
-                         {"rattlers", s.rattlers},
-                         {"backbone", counts_json(s.backbone)},
-                         {"all", counts_json(s.all)}});
-    }
-    out["steps"] = std::move(steps);
+    out["steps"] = json::array_of(plateau.steps, [](const PlateauStep& s) {
+        return Json{{"threshold", or_null(s.threshold)},
+                    {"candidates", s.candidate_count},
+                    {"rattlers", s.rattlers},
+                    {"backbone", counts_json(s.backbone)},
+                    {"all", counts_json(s.all)}};
+    });
     if (file.packing.cell.all() && file.packing.bars.empty()) {
         double threshold = thresholds[1];
         const std::vector<Contact> backbone = shown_backbone(file.packing, plateau, threshold);

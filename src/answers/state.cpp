@@ -41,11 +41,7 @@ std::span<const double> of_path(const State& state, const StressRates& all) {
 }
 
 Json numbers(std::span<const double> values) {
-    Json out = Json::array();
-    for (const double value : values) {
-        out.push_back(or_null(value));
-    }
-    return out;
+    return json::array_of(values, or_null);
 }
 
 std::string bodies_text(int count) {
@@ -228,11 +224,7 @@ void add_yielding(Json& object, const Yielding& y, int dimension) {
                                       {"stress", or_null(e.stress)}};
     };
     const auto pairs = [](std::span<const Enclosure> values) {
-        Json out = Json::array();
-        for (const Enclosure& value : values) {
-            out.push_back({or_null(value.value), or_null(value.radius)});
-        }
-        return out;
+        return json::array_of(values, [](const Enclosure& e) { return Json{or_null(e.value), or_null(e.radius)}; });
     };
     const Json rates = pairs(std::span(y.length_rate).first(static_cast<std::size_t>(dimension)));
     object["second_variation"] = pairs(y.second_variation);
@@ -329,10 +321,9 @@ void add_averages(Json& object, const State& state, const Certification& truth, 
     object["pressure"] = or_null(mean.pressure);
     object["fabric"] = tensor_json(mean.fabric, axes);
     object["mean_force"] = or_null(mean.mean_force);
-    object["force_distribution"] = Json::array();
-    for (const auto& [centre, density] : force_distribution(state, truth)) {
-        object["force_distribution"].push_back({or_null(centre), or_null(density)});
-    }
+    object["force_distribution"] = json::array_of(force_distribution(state, truth), [](const auto& at) {
+        return Json{or_null(at.first), or_null(at.second)};
+    });
 }
 
 /// The smallest singular values of a structure that is proved regular.

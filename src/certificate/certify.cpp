@@ -5,6 +5,7 @@
 #include "contact/candidates.hpp"
 #include "contact/images.hpp"
 #include "contact/other_pairs.hpp"
+#include "core/dot.hpp"
 #include "core/roundoff.hpp"
 #include "verified/to_vertex.hpp"
 
@@ -515,10 +516,7 @@ bool is_vague(const LoadEndClaim& end, double largest) {
 void Prover::prove_load_interval() {
     constexpr int copies = 100;
     std::optional<LoadIntervalClaim>& claim = result_.claims.load_interval;
-    double largest = 0;
-    for (const double stress : state_.load.stress) {
-        largest = std::max(largest, std::abs(stress));
-    }
+    const double stresses = largest(state_.load.stress);
     std::string open;
     bool hopeless = false;
     do {
@@ -527,7 +525,7 @@ void Prover::prove_load_interval() {
         if (low.claim && high.claim) {
             claim = LoadIntervalClaim{*low.claim, *high.claim, vertex_->rung()};
         }
-        if (claim && !is_vague(claim->low, largest) && !is_vague(claim->high, largest)) {
+        if (claim && !is_vague(claim->low, stresses) && !is_vague(claim->high, stresses)) {
             return;
         }
         open = fmt::format("{}{}{} ({})", low.open_question,

@@ -2,6 +2,7 @@
 
 #include "certificate/reach.hpp"
 #include "contact/separation.hpp"
+#include "core/dot.hpp"
 #include "core/roundoff.hpp"
 #include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <span>
 
 namespace isostat {
@@ -34,13 +36,9 @@ HeldMotion motion_of(const Vertex& vertex, std::size_t slot) {
     std::vector<double> on_dofs(contacts.size(), 0.0);
     on_dofs[slot] = 1;
     vertex.factorisation.solve_velocities(on_dofs);
-    HeldMotion motion{std::vector<double>(vertex.packing.q.size(), 0.0)};
-    double square = 0;
-    for (std::size_t mu = 0; mu < on_dofs.size(); ++mu) {
-        motion.v[vertex.structure.dofs().coordinate_of(mu)] = -on_dofs[mu];
-        square += on_dofs[mu] * on_dofs[mu];
-    }
-    motion.size = std::sqrt(square) * up;
+    std::ranges::transform(on_dofs, on_dofs.begin(), std::negate());
+    HeldMotion motion{vertex.structure.dofs().on_coordinates(on_dofs)};
+    motion.size = euclidean_norm(on_dofs) * up;
     double residual = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const auto rate = gap_gradient(vertex.packing, contacts[l]).rate(motion.v, l == slot ? -1.0 : 0.0);
@@ -493,10 +491,7 @@ Flattening flattening(const Vertex& vertex, const Load& load, const HeldMinimum&
         }
     }
     vertex.factorisation.solve_velocities(turned);
-    std::vector<double> changes(v.size(), 0.0); // of v
-    for (std::size_t mu = 0; mu < turned.size(); ++mu) {
-        changes[dofs.coordinate_of(mu)] = turned[mu];
-    }
+    const std::vector<double> changes = dofs.on_coordinates(turned); // of v
     Flattening least{solver.eigenvalues()(0)};
     const auto add = [&least](double term) {
         least.rate += term;

@@ -9,8 +9,6 @@
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <fmt/format.h>
-
 namespace isostat::cli {
 
 namespace {

@@ -20,7 +20,6 @@
 #include <cerrno>
 #include <concepts>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -47,7 +46,8 @@ std::string quoted(int argc, char** argv) {
 
 /// An option or an argument of a command, with the type that `--help` shows.
 template <class T>
-CLI::Option* option(CLI::App& command, const char* name, T& value, const char* words, const char* type = nullptr) {
+CLI::Option* option(CLI::App& command, const char* name, T& value, const std::string& words,
+                    const char* type = nullptr) {
     CLI::Option* made = command.add_option(name, value, words);
     return type == nullptr ? made : made->type_name(type);
 }
@@ -349,7 +349,7 @@ Examples: isostat verify certificate.json --input state.json
             "body, clump or clumpId where there is one)",
             "COLUMN|none");
         option(command, "--format", a.options.format,
-               "lammps-data, lammps-dump, xyz, table, braces, centres (default: from the content)");
+               fmt::format("{} (default: from the content)", fmt::join(isostat::foreign_formats(), ", ")));
         command.add_flag("--not-periodic", a.options.not_periodic,
                          "take periodic boundaries for open ones: contacts across them are not looked for");
         command

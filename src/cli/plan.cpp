@@ -14,10 +14,7 @@ void print_plan(const Scene& scene) {
         object["plan"].push_back(
             {{"kind", entry.kind}, {"name", entry.name}, {"used", entry.used}, {"reason", entry.reason}});
     }
-    object["programme"] = Json::array();
-    for (const ProgrammeStep& step : scene.programme) {
-        object["programme"].push_back(describe(step));
-    }
+    object["programme"] = json::array_of(scene.programme, [](const ProgrammeStep& step) { return describe(step); });
     for (const Setting& setting : scene.settings) {
         object["settings"].push_back(
             {{"section", setting.section}, {"key", setting.key}, {"value", setting.value}, {"line", setting.line}});

@@ -6,8 +6,6 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <fmt/format.h>
-
 #include <cstdio>
 
 namespace isostat::cli {

@@ -1,6 +1,7 @@
 #include "cli/read_packing.hpp"
 
 #include "cli/ranges.hpp"
+#include "core/dot.hpp"
 #include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/numbers.hpp"
@@ -130,11 +131,7 @@ void require_plane_unless(bool spheres, const Packing& packing, const std::strin
 
 /// Bound of the rounding of gaps in a file of this program.
 double rounding_of(const Packing& packing) {
-    double largest = packing.max_radius();
-    for (const double x : packing.q) {
-        largest = std::max(largest, std::abs(x));
-    }
-    const double rounding = 0x1p-53 * largest;
+    const double rounding = 0x1p-53 * std::max(packing.max_radius(), largest(packing.q));
     return rounding_of_gaps(rounding, rounding, rounding, {packing.dimension});
 }
 

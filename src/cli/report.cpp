@@ -24,10 +24,7 @@ namespace fs = std::filesystem;
 Json json_of(const std::string& input, const ReportResult& result) {
     Json object;
     object["input"] = input;
-    object["files"] = Json::array();
-    for (const fs::path& file : result.files) {
-        object["files"].push_back(file.string());
-    }
+    object["files"] = json::array_of(result.files, [](const fs::path& file) { return file.string(); });
     object["notes"] = result.notes;
     object["text"] = result.text;
     return object;

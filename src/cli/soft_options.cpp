@@ -2,8 +2,6 @@
 #include "cli/read_packing.hpp"
 #include "core/refuse.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace isostat::cli {

@@ -55,9 +55,7 @@ class FrameTable {
     explicit FrameTable(const Manifest& manifest)
         : manifest_(manifest), text_(read_text(manifest.frames)), lines_(text_, manifest.frames) {
         const TextLine names = lines_.next("names of columns", ',');
-        for (std::size_t k = 0; k < names.size(); ++k) {
-            names_.emplace_back(names.field(k));
-        }
+        names_.assign(names.fields().begin(), names.fields().end());
         where_ = names.place();
         foreign::refuse_twice(names_, where_);
         (void)required("timestep");

@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <ranges>
 
 namespace isostat::compare {
 
@@ -139,31 +140,22 @@ std::string cell(const Json& value) {
 }
 
 template <class Row> std::string csv(const std::vector<Column<Row>>& columns, const std::vector<Row>& rows) {
-    std::string text;
-    for (const auto& column : columns) {
-        text += (text.empty() ? "" : ",") + column.name;
-    }
-    text += "\n";
+    std::string text = fmt::format("{}\n", fmt::join(columns | std::views::transform(&Column<Row>::name), ","));
     for (const Row& row : rows) {
-        std::vector<std::string> cells;
-        for (const auto& column : columns) {
-            cells.push_back(cell(column.value(row)));
-        }
-        text += fmt::format("{}\n", fmt::join(cells, ","));
+        const auto cell_of = [&row](const Column<Row>& column) { return cell(column.value(row)); };
+        text += fmt::format("{}\n", fmt::join(columns | std::views::transform(cell_of), ","));
     }
     return text;
 }
 
 template <class Row> Json objects(const std::vector<Column<Row>>& columns, const std::vector<Row>& rows) {
-    Json out = Json::array();
-    for (const Row& row : rows) {
+    return json::array_of(rows, [&](const Row& row) {
         Json object;
         for (const auto& column : columns) {
             object[column.name] = column.value(row);
         }
-        out.push_back(std::move(object));
-    }
-    return out;
+        return object;
+    });
 }
 
 /// Whether an error has a point on the logarithmic axis.

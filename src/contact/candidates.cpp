@@ -87,7 +87,7 @@ std::optional<Contact> fixed_overlap(const Packing& packing) {
             found = pair;
         }
     };
-    if (packing.cell.any() || std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
+    if (packing.cell.any() || std::ranges::find(packing.fixed, 1) != packing.fixed.end()) {
         for (const Contact& pair :
              near_pairs(packing, 0.5 * packing.min_radius()).pairs) { // any positive reach will do
             look(pair);
@@ -107,7 +107,7 @@ bool CandidateList::covers(const Packing& packing, double radius) const {
     }
     // 1e-14 covers the rounding of the differences and of the norm.
     return reach * moved_in_box(packing) + radius < 0.5 * reach * (1 - 1e-14) &&
-           std::none_of(packing.q.begin(), packing.q.end(), [](double x) { return std::isnan(x); });
+           std::ranges::none_of(packing.q, [](double x) { return std::isnan(x); });
 }
 
 double CandidateList::moved_in_box(const Packing& packing) const {

@@ -13,14 +13,6 @@ namespace isostat {
 
 namespace {
 
-double plain_norm(const PerAxis<double>& d) {
-    double square = 0;
-    for (const double c : d) {
-        square += c * c;
-    }
-    return std::sqrt(square);
-}
-
 /// "(1,-1)", or empty.
 std::string image_text(const Image& image, int dimension) {
     std::string text;
@@ -47,21 +39,21 @@ int normalise(PerAxis<double>& d) {
 }
 
 double norm(PerAxis<double> d) {
-    const double plain = plain_norm(d);
+    const double plain = euclidean_norm(d);
     if (in_range(plain)) {
         return plain;
     }
     const int exponent = normalise(d);
-    return std::ldexp(plain_norm(d), exponent);
+    return std::ldexp(euclidean_norm(d), exponent);
 }
 
 } // namespace
 
 PerAxis<double> direction(PerAxis<double> d) {
-    double length = plain_norm(d);
+    double length = euclidean_norm(d);
     if (!in_range(length)) {
         normalise(d); // squares under- or overflow
-        length = plain_norm(d);
+        length = euclidean_norm(d);
     }
     for (double& component : d) {
         component /= length;

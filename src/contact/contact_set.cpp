@@ -27,7 +27,7 @@ std::vector<Contact> ContactSet::take_sorted() {
     for (std::size_t i = 0; i + 1 < start_.size(); ++i) {
         std::sort(members_.begin() + start_[i], members_.begin() + start_[i + 1]);
     }
-    std::fill(start_.begin(), start_.end(), 0);
+    std::ranges::fill(start_, 0);
     return std::move(members_);
 }
 
@@ -46,7 +46,7 @@ std::vector<int> contacts_per_disk(int disks, const std::vector<Contact>& contac
 
 int most_held(int disks, const std::vector<Contact>& contacts) {
     const std::vector<int> count = contacts_per_disk(disks, contacts);
-    return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
+    return static_cast<int>(std::ranges::max_element(count) - count.begin());
 }
 
 std::vector<Contact> unmarked(const std::vector<Contact>& contacts, const std::vector<unsigned char>& marks) {

@@ -20,7 +20,7 @@ inline constexpr int farthest_contact = 2;
 
 /// Whether the offset is more than `most` periods along some axis.
 inline bool is_beyond(const Contact& pair, int most) {
-    return std::any_of(pair.image.m.begin(), pair.image.m.end(), [most](int m) { return std::abs(m) > most; });
+    return std::ranges::any_of(pair.image.m, [most](int m) { return std::abs(m) > most; });
 }
 
 /// Finitely many images of the disks of a cell, as a packing without a cell. Every pair of a disk and an image with a

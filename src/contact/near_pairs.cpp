@@ -107,7 +107,7 @@ std::vector<Contact> pairs_within(const Packing& packing, double reach, int most
         }
     }
     if (repeats) { // a pair and its copy moved by a period
-        std::sort(pairs.begin(), pairs.end());
+        std::ranges::sort(pairs);
         pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     }
     without_hidden_pairs(pairs, packing);

@@ -66,9 +66,9 @@ class Grid {
     /// Calls `visit(j)` for the disks that may be near i: those of its cell and of the cells around it, and the large
     /// ones; for a large i all disks.
     template <class Visit> void around(std::size_t i, const Visit& visit) const {
-        std::for_each(large_.begin(), large_.end(), visit);
+        std::ranges::for_each(large_, visit);
         if (cell_of_[i] == apart) {
-            std::for_each(member_.begin(), member_.end(), visit);
+            std::ranges::for_each(member_, visit);
             return;
         }
         PerAxis<int> centre{};
@@ -157,8 +157,8 @@ class Near {
 bool lengths_are_plain(const std::vector<double>& x, const std::vector<double>& radius) {
     constexpr double largest = 1e100;   // squares neither overflow
     constexpr double smallest = 1e-100; // nor underflow
-    return std::all_of(radius.begin(), radius.end(), [](double r) { return r >= smallest && r <= largest; }) &&
-           std::all_of(x.begin(), x.end(), [](double c) { return std::abs(c) <= largest; }); // also false for a NaN
+    return std::ranges::all_of(radius, [](double r) { return r >= smallest && r <= largest; }) &&
+           std::ranges::all_of(x, [](double c) { return std::abs(c) <= largest; }); // also false for a NaN
 }
 
 void find_pairs(int dimension, const std::vector<double>& x, const std::vector<double>& radius, double reach,

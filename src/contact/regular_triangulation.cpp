@@ -174,7 +174,7 @@ class RegularTriangulation::Mover {
     static void replace(std::vector<Face>& faces, int of, int was, int is) {
         if (of >= 0) {
             std::array<int, 3>& neighbour = faces[static_cast<std::size_t>(of)].neighbour;
-            *std::find(neighbour.begin(), neighbour.end(), was) = is;
+            *std::ranges::find(neighbour, was) = is;
         }
     }
 

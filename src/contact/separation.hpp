@@ -4,7 +4,6 @@
 
 #include <isostat/contact/state.hpp>
 
-#include <array>
 #include <cstddef>
 #include <cstdlib>
 #include <type_traits>

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <string>
-#include <type_traits>
 #include <utility>
 
 namespace isostat {

@@ -2,7 +2,6 @@
 /// \file
 /// Scalar product and largest component of long vectors.
 
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>

@@ -9,7 +9,6 @@
 #include <array>
 #include <atomic>
 #include <cassert>
-#include <cstdint>
 #include <deque>
 #include <exception>
 #include <memory>

@@ -3,12 +3,12 @@
 #include "contact/names.hpp"
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
+#include "io/json.hpp"
 #include "rigidity/isostatic.hpp"
 #include "verified/centre.hpp"
 #include "verified/force_solution.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <limits>
@@ -157,7 +157,7 @@ class Encloser {
     double sigma_ = 0;
 };
 
-using Json = nlohmann::ordered_json;
+using json::Json;
 
 constexpr int vectors_in_json = 10;
 constexpr int vectors_in_text = 3;
@@ -217,17 +217,12 @@ std::string enclosed_text(const ExactPacking& packing, const Inspection& inspect
 std::string enclosed_json(const ExactPacking& packing, const Inspection& inspection) {
     const EnclosedBases bases = enclose_bases(packing, inspection, vectors_in_json);
     const auto list = [](const std::vector<EnclosedVector>& vectors, const std::vector<std::string>& names) {
-        Json out = Json::array();
-        for (const EnclosedVector& vector : vectors) {
-            Json entries = Json::array();
-            for (const std::size_t k : visible(vector)) {
-                entries.push_back({names[k], vector.value[k]});
-            }
-            out.push_back({{"free", names[static_cast<std::size_t>(vector.free)]},
-                           {"radius", vector.radius},
-                           {"entries", std::move(entries)}});
-        }
-        return out;
+        return json::array_of(vectors, [&](const EnclosedVector& vector) {
+            const auto entry = [&](std::size_t k) { return Json{names[k], vector.value[k]}; };
+            return Json{{"free", names[static_cast<std::size_t>(vector.free)]},
+                        {"radius", vector.radius},
+                        {"entries", json::array_of(visible(vector), entry)}};
+        });
     };
     const Json object{
         {"verdict", to_string(bases.verdict)},

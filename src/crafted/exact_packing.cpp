@@ -1,6 +1,7 @@
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
+#include "core/dot.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 #include "rigidity/strained_matrix.hpp"
@@ -105,11 +106,7 @@ std::optional<Failure> take_walls(Touching& touching) {
 /// Upper bound of the change of a gap by rounding to doubles: half a unit of the last place of each coordinate, and for
 /// an image less than 100 times that per period.
 double lost_by_rounding(const Packing& rounded) {
-    double largest = rounded.max_radius();
-    for (const double x : rounded.q) {
-        largest = std::max(largest, std::abs(x));
-    }
-    return 0x1p-40 * largest;
+    return 0x1p-40 * std::max(rounded.max_radius(), largest(rounded.q));
 }
 
 /// The pairs whose gap may be 0, or all pairs where that is out of the range of doubles.

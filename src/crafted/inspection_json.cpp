@@ -35,23 +35,15 @@ void add_cell(const Inspection& inspection, Json& out) {
 
 Json ranges_json(const Inspection& inspection, const std::vector<std::string>& contacts,
                  const std::vector<std::string>& coordinates) {
-    Json out = Json::array();
-    for (const LoadRange& range : inspection.ranges) {
-        const auto end = [](const std::optional<Number>& force) { return force ? Json(force->text()) : Json(nullptr); };
-        Json entry{{"on", coordinates[static_cast<std::size_t>(range.dof)]},
-                   {"least", end(range.least)},
-                   {"most", end(range.most)},
-                   {"zero_at_least", Json::array()},
-                   {"zero_at_most", Json::array()}};
-        for (const int l : range.zero_at_least) {
-            entry["zero_at_least"].push_back(contacts[static_cast<std::size_t>(l)]);
-        }
-        for (const int l : range.zero_at_most) {
-            entry["zero_at_most"].push_back(contacts[static_cast<std::size_t>(l)]);
-        }
-        out.push_back(std::move(entry));
-    }
-    return out;
+    const auto end = [](const std::optional<Number>& force) { return force ? Json(force->text()) : Json(nullptr); };
+    const auto name = [&](int l) { return contacts[static_cast<std::size_t>(l)]; };
+    return json::array_of(inspection.ranges, [&](const LoadRange& range) {
+        return Json{{"on", coordinates[static_cast<std::size_t>(range.dof)]},
+                    {"least", end(range.least)},
+                    {"most", end(range.most)},
+                    {"zero_at_least", json::array_of(range.zero_at_least, name)},
+                    {"zero_at_most", json::array_of(range.zero_at_most, name)}};
+    });
 }
 
 /// The names whose flag is set, or is not set, as `set` requires.
@@ -93,10 +85,7 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
     if (!packing.bars.empty()) {
         out["bodies"] = Bodies(approximate(packing)).members();
     }
-    out["hold"] = Json::array();
-    for (const DiskHold hold : inspection.hold) {
-        out["hold"].push_back(to_string(hold));
-    }
+    out["hold"] = json::array_of(inspection.hold, [](DiskHold hold) { return to_string(hold); });
     out["contacts_without_force"] = flagged(contacts, inspection.carrying, false);
     out["one_sign"] = inspection.one_sign_decided ? to_string(inspection.one_sign.kind) : "undecided";
     out["one_sign_stress"] = entries(inspection.one_sign.combination, contacts);
@@ -109,14 +98,10 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
     out["second_order"] = to_string(inspection.second_order);
     out["stable"] = to_string(inspection.stable);
     out["bases_exact"] = to_string(inspection.bases_exact);
-    out["self_stresses"] = Json::array();
-    for (const auto& stress : inspection.self_stresses) {
-        out["self_stresses"].push_back(entries(stress, contacts));
-    }
-    out["motions"] = Json::array();
-    for (const auto& motion : inspection.motions) {
-        out["motions"].push_back(entries(motion, coordinates));
-    }
+    out["self_stresses"] =
+        json::array_of(inspection.self_stresses, [&](const auto& stress) { return entries(stress, contacts); });
+    out["motions"] =
+        json::array_of(inspection.motions, [&](const auto& motion) { return entries(motion, coordinates); });
     return out.dump(2);
 }
 

@@ -3,6 +3,7 @@
 #include "contact/separation.hpp"
 #include "crafted/able.hpp"
 
+#include <algorithm>
 #include <functional>
 
 namespace isostat::crafted {
@@ -106,9 +107,7 @@ std::optional<LoadRange> load_range(const std::vector<Number>& forces, const std
     }
     LoadRange out;
     out.most = largest(forces, rows);
-    for (Number& x : rows[0]) {
-        x = -x;
-    }
+    std::ranges::transform(rows[0], rows[0].begin(), std::negate());
     if (const auto back = largest(forces, rows)) {
         out.least = -*back;
     }

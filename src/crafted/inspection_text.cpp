@@ -1,4 +1,5 @@
 #include "contact/names.hpp"
+#include "core/index.hpp"
 #include "core/refuse.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace isostat::crafted {
@@ -31,24 +33,24 @@ template <class Range, class Text> std::string joined(const Range& range, Text t
     return count > longest_list ? fmt::format("{}, and {} more", out, count - longest_list) : out;
 }
 
-std::vector<int> disks_with(const Inspection& inspection, DiskHold hold) {
+/// The numbers below `count` for which `holds`, as numbers of disks.
+template <class Holds> std::vector<int> numbers_where(std::size_t count, Holds holds) {
     std::vector<int> out;
-    for (std::size_t i = 0; i < inspection.hold.size(); ++i) {
-        if (inspection.hold[i] == hold) {
-            out.push_back(static_cast<int>(i));
+    for (std::size_t k = 0; k < count; ++k) {
+        if (holds(k)) {
+            out.push_back(static_cast<int>(k));
         }
     }
     return out;
 }
 
+std::vector<int> disks_with(const Inspection& inspection, DiskHold hold) {
+    return numbers_where(inspection.hold.size(), [&](std::size_t i) { return inspection.hold[i] == hold; });
+}
+
 std::string vector_text(const std::vector<Number>& vector, const std::vector<std::string>& names) {
-    std::vector<std::size_t> entries;
-    for (std::size_t k = 0; k < vector.size(); ++k) {
-        if (!vector[k].is_zero()) {
-            entries.push_back(k);
-        }
-    }
-    return joined(entries, [&](std::size_t k) { return fmt::format("{}: {}", names[k], vector[k].text()); });
+    return joined(numbers_where(vector.size(), [&](std::size_t k) { return !vector[k].is_zero(); }),
+                  [&](int k) { return fmt::format("{}: {}", names[at(k)], vector[at(k)].text()); });
 }
 
 std::string number_list(const std::vector<int>& numbers) {
@@ -71,9 +73,6 @@ class InspectionTable {
   private:
     void line(const std::string& key, const std::string& value) { out_ += fmt::format("{:<22} {}\n", key, value); }
     [[nodiscard]] std::string grain() const { return grain_word(packing_.dimension()); }
-    static std::string list(const std::vector<std::string>& names, const char* none) {
-        return names.empty() ? none : joined(names, [](const std::string& name) { return name; });
-    }
 
     void counts() {
         const char* most = exact_ ? "" : "<= ";
@@ -83,8 +82,8 @@ class InspectionTable {
         }
         line("degrees of freedom N_f", std::to_string(inspection_.dof_count));
         line("contacts N", fmt::format("{} (gaps decided exactly)", inspection_.contact_count()));
-        line("contact list",
-             list({contact_names_.begin(), contact_names_.begin() + inspection_.contact_count()}, "none"));
+        const std::span listed = std::span(contact_names_).first(static_cast<std::size_t>(inspection_.contact_count()));
+        line("contact list", listed.empty() ? "none" : joined(listed, [](const std::string& name) { return name; }));
         line("rank", fmt::format("{}{} ({})", exact_ ? "" : ">= ", inspection_.rank,
                                  exact_ ? "proved" : "lower bound proved, upper bound undecided"));
         line("hyperstaticity h", fmt::format("{}{}", most, inspection_.hyperstaticity));
@@ -121,13 +120,12 @@ class InspectionTable {
     }
 
     void forces() {
-        std::vector<std::string> idle;
-        for (std::size_t l = 0; l < contact_names_.size(); ++l) {
-            if (inspection_.carrying[l] == 0) {
-                idle.push_back(contact_names_[l]);
-            }
-        }
-        line("contacts without force", list(idle, "none by position of the normals"));
+        const auto contacts = [&](const std::vector<int>& numbers, const char* none) {
+            return numbers.empty() ? none : joined(numbers, [&](int l) { return contact_names_[at(l)]; });
+        };
+        line("contacts without force",
+             contacts(numbers_where(contact_names_.size(), [&](std::size_t l) { return inspection_.carrying[l] == 0; }),
+                      "none by position of the normals"));
         line("self-stress, one sign",
              inspection_.one_sign_decided ? to_string(inspection_.one_sign.kind) : "undecided");
         line("support of the load",
@@ -139,17 +137,13 @@ class InspectionTable {
         for (const LoadRange& range : inspection_.ranges) {
             line("supported", range_text(range));
         }
-        std::vector<std::string> structural, special;
-        for (std::size_t l = 0; l < inspection_.structural_zero.size(); ++l) {
-            if (inspection_.forces[l].is_zero()) {
-                (inspection_.structural_zero[l] != 0 ? structural : special).push_back(contact_names_[l]);
+        for (const auto& [key, structural] : {std::pair("zero for any position", true), {"zero by position", false}}) {
+            const std::vector<int> zeros = numbers_where(inspection_.structural_zero.size(), [&](std::size_t l) {
+                return inspection_.forces[l].is_zero() && (inspection_.structural_zero[l] != 0) == structural;
+            });
+            if (!zeros.empty()) {
+                line(key, contacts(zeros, ""));
             }
-        }
-        if (!structural.empty()) {
-            line("zero for any position", list(structural, ""));
-        }
-        if (!special.empty()) {
-            line("zero by position", list(special, ""));
         }
         line("second order (bars)", to_string(inspection_.second_order));
         line("stable", packing_.load ? std::string(to_string(inspection_.stable)) : "no load");
@@ -161,8 +155,8 @@ class InspectionTable {
             if (!force) {
                 return std::string(none);
             }
-            const std::string at = joined(zero, [&](int l) { return contact_names_[static_cast<std::size_t>(l)]; });
-            return zero.empty() ? force->text() : fmt::format("{} (no force in {})", force->text(), at);
+            const std::string in = joined(zero, [&](int l) { return contact_names_[at(l)]; });
+            return zero.empty() ? force->text() : fmt::format("{} (no force in {})", force->text(), in);
         };
         return fmt::format(
             "force on {} from {} to {}", dof_names(approximate(packing_))[static_cast<std::size_t>(range.dof)],
@@ -198,21 +192,17 @@ class Comparison {
           dofs_(dof_names(approximate(packing))), source_(source), words_(words(inspection)) {}
 
     void check(const ExpectedEntry& entry) {
+        static const std::map<std::string, void (Comparison::*)(const ExpectedEntry&, const std::vector<std::string>&)>
+            rows_of{{"forces", &Comparison::check_force},
+                    {"ranges", &Comparison::check_range},
+                    {"strains", &Comparison::check_strain}};
         if (const auto word = words_.find(entry.key); word != words_.end()) {
             check_word(entry, word->second);
         } else if (auto found = list(entry.key)) {
             check_list(entry, std::move(*found));
-        } else if (entry.key == "forces") {
+        } else if (const auto rows = rows_of.find(entry.key); rows != rows_of.end()) {
             for (const auto& row : entry.values) {
-                check_force(entry, row);
-            }
-        } else if (entry.key == "ranges") {
-            for (const auto& row : entry.values) {
-                check_range(entry, row);
-            }
-        } else if (entry.key == "strains") {
-            for (const auto& row : entry.values) {
-                check_strain(entry, row);
+                (this->*rows->second)(entry, row);
             }
         } else {
             bad(entry,
@@ -276,15 +266,11 @@ class Comparison {
     [[nodiscard]] std::optional<std::vector<std::string>> list(const std::string& key) const {
         std::vector<std::string> found;
         const auto numbers = [&](const std::vector<int>& disks) {
-            for (const int i : disks) {
-                found.push_back(std::to_string(i));
-            }
+            std::ranges::transform(disks, std::back_inserter(found), [](int i) { return std::to_string(i); });
         };
         const auto contacts = [&](const auto& listed) {
-            for (std::size_t l = 0; l < inspection_.contacts.size(); ++l) {
-                if (listed(l)) {
-                    found.push_back(names_[l]);
-                }
+            for (const int l : numbers_where(inspection_.contacts.size(), listed)) {
+                found.push_back(names_[at(l)]);
             }
         };
         if (key == "contacts") {

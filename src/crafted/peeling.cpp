@@ -8,7 +8,6 @@
 
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Interval_nt.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>

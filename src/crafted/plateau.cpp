@@ -13,11 +13,10 @@
 #include <isostat/core/machine.hpp>
 #include <isostat/crafted/plateau.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -425,11 +424,8 @@ class Sequence {
 /// Chooses about `rows` of the `ends` in [begin, end), see `plateau`.
 std::set<int> thinned(const Sequence& sequence, int begin, int end, int rows, const Plateau& found) {
     std::vector<int> inside;
-    for (const int m : sequence.ends()) {
-        if (m >= begin && m <= end && m > 0) {
-            inside.push_back(m);
-        }
-    }
+    std::ranges::copy_if(sequence.ends(), std::back_inserter(inside),
+                         [=](int m) { return m >= begin && m <= end && m > 0; });
     if (rows <= 0 || inside.size() <= static_cast<std::size_t>(rows)) {
         return {inside.begin(), inside.end()};
     }

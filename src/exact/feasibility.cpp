@@ -1,7 +1,9 @@
 #include <isostat/exact/number.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <functional>
 #include <stdexcept>
 
 namespace isostat::exact {
@@ -34,9 +36,7 @@ class Tableau {
             line.back() = b[i];
             flipped_[i] = b[i].sign() < 0;
             if (flipped_[i]) {
-                for (Number& x : line) {
-                    x = -x;
-                }
+                std::ranges::transform(line, line.begin(), std::negate());
             }
             line[cols_ + i] = 1;
             basis_[i] = cols_ + i;
@@ -230,9 +230,7 @@ OneSignAnswer one_sign(const std::vector<Row>& whole, int size) {
     if (!gordan.feasible) {
         // u A <= 0 with u_last > 0: the combination -u exceeds u_last in every component.
         Row weights(gordan.farkas.begin(), gordan.farkas.end() - 1);
-        for (Number& w : weights) {
-            w = -w;
-        }
+        std::ranges::transform(weights, weights.begin(), std::negate());
         OneSignAnswer out{OneSign::strict, combine(whole, weights, whole.front().size())};
         for (std::size_t i = 0; i < components; ++i) {
             require(out.combination[i].sign() > 0);
@@ -251,9 +249,7 @@ OneSignAnswer one_sign(const std::vector<Row>& whole, int size) {
         return {};
     }
     Row weights = stiemke.farkas;
-    for (Number& w : weights) {
-        w = -w;
-    }
+    std::ranges::transform(weights, weights.begin(), std::negate());
     OneSignAnswer out{OneSign::partial, combine(whole, weights, whole.front().size())};
     bool somewhere = false;
     for (std::size_t i = 0; i < components; ++i) {

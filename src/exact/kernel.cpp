@@ -129,7 +129,7 @@ class Lifting {
     [[nodiscard]] std::vector<int> complement(const std::vector<int>& pivots) const {
         std::vector<int> out;
         for (int j = 0; j < matrix_.cols(); ++j) {
-            if (!std::binary_search(pivots.begin(), pivots.end(), j)) {
+            if (!std::ranges::binary_search(pivots, j)) {
                 out.push_back(j);
             }
         }

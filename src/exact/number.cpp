@@ -62,7 +62,7 @@ std::pair<Number, Number> split(const std::vector<Term>& list, const mpz_class& 
 } // namespace
 
 Number make_number(std::vector<Term> list) {
-    std::sort(list.begin(), list.end(), [](const Term& a, const Term& b) { return a.radicand < b.radicand; });
+    std::ranges::sort(list, [](const Term& a, const Term& b) { return a.radicand < b.radicand; });
     Terms terms;
     for (Term& term : list) {
         if (!terms.list.empty() && terms.list.back().radicand == term.radicand) {
@@ -136,7 +136,7 @@ std::vector<mpz_class> coprime_base(const std::vector<mpz_class>& square_free) {
             base.push_back(std::move(next));
         }
     }
-    std::sort(base.begin(), base.end());
+    std::ranges::sort(base);
     return base;
 }
 
@@ -274,9 +274,8 @@ Number operator*(const Number& a, const Number& b) {
 bool operator==(const Number& a, const Number& b) {
     const auto& s = list_of(a);
     const auto& t = list_of(b);
-    return std::equal(s.begin(), s.end(), t.begin(), t.end(), [](const Term& x, const Term& y) {
-        return x.radicand == y.radicand && x.coefficient == y.coefficient;
-    });
+    return std::ranges::equal(
+        s, t, [](const Term& x, const Term& y) { return x.radicand == y.radicand && x.coefficient == y.coefficient; });
 }
 
 Number Number::inverse() const {

@@ -49,7 +49,7 @@ std::vector<int> colamd_order(const sparse::Matrix<std::uint64_t>& matrix) {
         throw std::bad_alloc();
     }
     std::vector<int> work(length);
-    std::copy(matrix.row.begin(), matrix.row.end(), work.begin());
+    std::ranges::copy(matrix.row, work.begin());
     std::array<int, COLAMD_STATS> stats{};
     [[maybe_unused]] const int done =
         colamd(matrix.rows, matrix.cols, static_cast<int>(length), work.data(), order.data(), nullptr, stats.data());
@@ -110,7 +110,7 @@ std::vector<int> ranks_of_first_rows(const sparse::Matrix<std::uint64_t>& matrix
         const auto begin = static_cast<std::size_t>(matrix.start[static_cast<std::size_t>(column)]);
         const auto count = static_cast<std::size_t>(matrix.start[static_cast<std::size_t>(column) + 1]) - begin;
         if (elimination.append({matrix.row.data() + begin, count}, {matrix.value.data() + begin, count}, -1, weight)) {
-            const auto first = std::upper_bound(ends.begin(), ends.end(), elimination.pivot_row());
+            const auto first = std::ranges::upper_bound(ends, elimination.pivot_row());
             std::for_each(ranks.begin() + (first - ends.begin()), ranks.end(), [](int& r) { ++r; });
         }
         if (elimination.rank() == matrix.rows) {

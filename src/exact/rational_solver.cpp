@@ -30,7 +30,7 @@ template <int Bits>
 SparseLu<Modular<Bits>> factorise(const sparse::Matrix<mpz_class>& a, const sparse::Ordering& order) {
     sparse::Matrix<typename Modular<Bits>::Value> reduced{a.rows, a.cols, a.start, a.row, {}};
     reduced.value.reserve(a.value.size());
-    std::transform(a.value.begin(), a.value.end(), std::back_inserter(reduced.value), Modular<Bits>::residue);
+    std::ranges::transform(a.value, std::back_inserter(reduced.value), Modular<Bits>::residue);
     return {Modular<Bits>(), reduced, order};
 }
 
@@ -129,7 +129,7 @@ bool satisfies(const sparse::Matrix<mpz_class>& a, bool transposed, const Ration
             r[transposed ? j : i] -= a.value[e] * x.numerator[transposed ? i : j];
         }
     }
-    return std::all_of(r.begin(), r.end(), [](const mpz_class& c) { return c == 0; });
+    return std::ranges::all_of(r, [](const mpz_class& c) { return c == 0; });
 }
 
 template <int Bits>
@@ -148,7 +148,7 @@ RationalVector lift(const SparseLu<Modular<Bits>>& lu, const sparse::Matrix<mpz_
     for (std::size_t done = 0, next = 2;; next += std::max<std::size_t>(2, next / 2)) {
         digits.clear();
         for (; done < next; ++done) {
-            std::transform(residual.begin(), residual.end(), digit.begin(), Modular<Bits>::residue);
+            std::ranges::transform(residual, digit.begin(), Modular<Bits>::residue);
             if (transposed) {
                 lu.solve_transposed(digit);
             } else {

@@ -37,7 +37,7 @@ std::uint64_t PrimeField::power(std::uint64_t a, std::uint64_t exponent) const {
 Reduction Reduction::suitable(const std::vector<const Number*>& numbers, std::uint64_t below) {
     std::vector<mpz_class> radicands, denominators;
     const auto remember = [](std::vector<mpz_class>& set, const mpz_class& value) {
-        const auto place = std::lower_bound(set.begin(), set.end(), value);
+        const auto place = std::ranges::lower_bound(set, value);
         if (value != 1 && (place == set.end() || *place != value)) {
             set.insert(place, value);
         }
@@ -59,7 +59,7 @@ Reduction Reduction::suitable(const std::vector<const Number*>& numbers, std::ui
         const auto divides = [&](const mpz_class& value) {
             return mpz_divisible_ui_p(value.get_mpz_t(), candidate) != 0;
         };
-        if (!is_prime(candidate) || std::any_of(denominators.begin(), denominators.end(), divides)) {
+        if (!is_prime(candidate) || std::ranges::any_of(denominators, divides)) {
             continue;
         }
         Reduction out(candidate);

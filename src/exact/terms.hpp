@@ -5,7 +5,6 @@
 
 #include <gmpxx.h>
 
-#include <memory>
 #include <utility>
 #include <vector>
 

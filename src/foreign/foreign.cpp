@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ranges>
 #include <span>
 #include <string_view>
 
@@ -238,14 +239,11 @@ bool one_frame(const std::string& format) {
 
 Raw read_raw(const std::string& format, const std::string& text, const std::string& source,
              const ForeignOptions& options) {
-    const std::vector<std::string>& formats = foreign_formats();
-    static constexpr std::array readers{foreign::read_lammps_data, foreign::read_lammps_dump, foreign::read_xyz,
-                                        foreign::read_table,       foreign::read_braces,      foreign::read_centres};
-    const auto at = static_cast<std::size_t>(std::ranges::find(formats, format) - formats.begin());
-    if (at >= readers.size()) {
-        refuse(source, "format '{}': expected one of {}", format, fmt::join(formats, ", "));
+    const auto* const found = std::ranges::find(foreign::formats, format, &foreign::Format::name);
+    if (found == foreign::formats.end()) {
+        refuse(source, "format '{}': expected one of {}", format, fmt::join(foreign_formats(), ", "));
     }
-    return readers[at](text, source, options);
+    return found->read(text, source, options);
 }
 
 } // namespace
@@ -262,8 +260,9 @@ bool foreign::are_upper(const PerAxis<PerAxis<double>>& vectors, std::size_t d) 
 }
 
 const std::vector<std::string>& foreign_formats() {
-    static const std::vector<std::string> formats{"lammps-data", "lammps-dump", "xyz", "table", "braces", "centres"};
-    return formats;
+    static const auto names = foreign::formats | std::views::transform(&foreign::Format::name);
+    static const std::vector<std::string> all(names.begin(), names.end());
+    return all;
 }
 
 ForeignPacking parse_foreign(const std::string& whole, const std::string& source, const ForeignOptions& options) {

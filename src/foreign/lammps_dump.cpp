@@ -145,9 +145,7 @@ FrameHeader read_dump_header(TextLines& lines, const std::string& item) {
                 line.fail(text, "item", "ITEM: NUMBER OF {} and ITEM: BOX BOUNDS before it", item);
             }
             frame.line = line.number();
-            for (std::size_t k = 2; k < line.size(); ++k) {
-                frame.names.emplace_back(line.field(k));
-            }
+            frame.names.assign(line.fields().begin() + 2, line.fields().end());
             return frame;
         } else {
             line.fail(text, "item", "TIMESTEP, UNITS, TIME, NUMBER OF {0}, BOX BOUNDS or {0} (a dump of style {1})",

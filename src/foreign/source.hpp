@@ -172,6 +172,18 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
 Raw read_braces(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_centres(const std::string& text, const std::string& source, const ForeignOptions& options);
 
+/// A format by its name for options and messages, and its reader.
+struct Format {
+    std::string_view name;
+    Raw (*read)(const std::string& text, const std::string& source, const ForeignOptions& options);
+};
+inline constexpr std::array formats{Format{"lammps-data", read_lammps_data},
+                                    Format{"lammps-dump", read_lammps_dump},
+                                    Format{"xyz", read_xyz},
+                                    Format{"table", read_table},
+                                    Format{"braces", read_braces},
+                                    Format{"centres", read_centres}};
+
 /// Combines in `raw` the statements of file and user on bounds and periodic axes. A stated box that is the cell is
 /// removed from `options`. Throws where the statements contradict each other, and for unsupported boundaries.
 void settle_bounds(Raw& raw, std::size_t axes, const std::string& source, ForeignOptions& options);

@@ -27,11 +27,7 @@ char separator_of(std::string_view line) {
 }
 
 std::vector<std::string> names_of(const TextLine& line) {
-    std::vector<std::string> names;
-    for (std::size_t k = 0; k < line.size(); ++k) {
-        names.emplace_back(line.field(k));
-    }
-    return names;
+    return {line.fields().begin(), line.fields().end()};
 }
 
 /// The words of a comment such as "# x y r", "# x y r; words" or "#format x_y_z_r".

@@ -32,11 +32,7 @@ Json interval(const Interval& value, const char* field) {
 }
 
 Json intervals(const std::vector<Interval>& values, const char* field) {
-    Json list = Json::array();
-    for (const Interval& value : values) {
-        list.push_back(interval(value, field));
-    }
-    return list;
+    return array_of(values, [field](const Interval& value) { return interval(value, field); });
 }
 
 Json claim(const CountingClaim& counting) {
@@ -102,13 +98,9 @@ Json claim(const LoadIntervalClaim& load, int dimension) {
 }
 
 Json claim(const MinimumClaim& minimum, int dimension) {
-    Json held = Json::array();
-    for (const Contact& coordinate : minimum.held) {
-        held.push_back(contact_to_json(coordinate, dimension));
-    }
     return {{"away", number(minimum.away, "minimum.away")},
             {"curvature", number(minimum.curvature, "minimum.curvature")},
-            {"held", held},
+            {"held", array_of(minimum.held, [dimension](const Contact& c) { return contact_to_json(c, dimension); })},
             {"form", intervals(minimum.form, "minimum.form")}};
 }
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <ranges>
 
 namespace isostat {
@@ -44,9 +45,7 @@ std::optional<std::string_view> behind(std::string_view pattern, std::string_vie
 
 std::vector<std::string> names_in(const std::string& folder, const std::vector<std::string>& names) {
     std::vector<std::string> all;
-    for (const std::string& name : names) {
-        all.push_back(folder + name);
-    }
+    std::ranges::transform(names, std::back_inserter(all), [&](const std::string& name) { return folder + name; });
     return all;
 }
 
@@ -68,10 +67,7 @@ std::vector<std::string> report_names() {
     for (const char* state : {"forces_eq_######", "forces_last"}) {
         names = joined(names, names_in(state, {".svg", ".vtk"}));
     }
-    for (const char* state : {"contacts_eq_######", "contacts_last"}) {
-        names.push_back(state + std::string(".csv"));
-    }
-    return names;
+    return joined(names, {"contacts_eq_######.csv", "contacts_last.csv"});
 }
 
 std::vector<std::string> run_names() {

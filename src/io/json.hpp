@@ -84,6 +84,15 @@ std::string dumped(const Json& document, int indent = -1);
 /// A number for a record: infinities and NaN, which JSON does not have, become null.
 Json or_null(double value);
 
+/// The array of `make(element)` for the elements of a range.
+template <class Range, class Make> Json array_of(const Range& range, Make make) {
+    Json out = Json::array();
+    for (const auto& element : range) {
+        out.push_back(make(element));
+    }
+    return out;
+}
+
 /// N_f, N, rank, h and k of a list; and those for each way to strain a cell, by its word.
 Json counts(const Counting& counting);
 Json counts(const StrainCounts& of_strains);

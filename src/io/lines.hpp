@@ -26,6 +26,7 @@ class TextLine {
     [[nodiscard]] int number() const { return number_; }
     [[nodiscard]] std::size_t size() const { return fields_.size(); }
     [[nodiscard]] std::string_view field(std::size_t k) const { return fields_[k]; }
+    [[nodiscard]] const std::vector<std::string_view>& fields() const { return fields_; }
 
     /// Throws `Error(bad_input)`: "FILE:LINE: NAME is 'VALUE': expected WHAT".
     [[noreturn]] void fail(std::string_view value, const std::string& name, const std::string& expected) const;

@@ -5,8 +5,6 @@
 
 #include <isostat/io/run_directory.hpp>
 
-#include <fmt/format.h>
-
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -177,10 +175,8 @@ std::string event_line(const ArcRecord& arc, const RecordColumns& names) {
     line["margin"] = json::or_null(arc.margin);
     line["decided_by"] = to_string(arc.decided_by);
     if (!arc.perturbed.empty()) {
-        line["perturbed"] = Json::array();
-        for (const TieDecision& tie : arc.perturbed) {
-            line["perturbed"].push_back(tie_json(tie, names.dimension));
-        }
+        line["perturbed"] =
+            json::array_of(arc.perturbed, [&](const TieDecision& tie) { return tie_json(tie, names.dimension); });
     }
     if (arc.certificate) {
         line["certificate"] = certificate_json(*arc.certificate);
@@ -196,10 +192,9 @@ std::string witness_line(const ArcRecord& arc) {
         if (!witness.whole) {
             line["grains"] = witness.grains;
         }
-        line["centres"] = Json::array();
-        for (const ArcWitness::Centre& centre : witness.centres) {
-            line["centres"].push_back({{"held", centre.held}, {"q", centre.q}});
-        }
+        line["centres"] = json::array_of(witness.centres, [](const ArcWitness::Centre& centre) {
+            return Json{{"held", centre.held}, {"q", centre.q}};
+        });
         line["end"] = witness.end;
     }
     return json::dumped(line) + "\n";

@@ -10,7 +10,6 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <fmt/format.h>
 #include <gmpxx.h>
 
 #include <algorithm>

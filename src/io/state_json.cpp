@@ -4,8 +4,6 @@
 #include "core/refuse.hpp"
 #include "packing/words.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <numeric>
 
@@ -96,11 +94,9 @@ Contact contact_of(const Field& field, const Packing& packing) {
 }
 
 Json terms(const std::vector<std::pair<Contact, Enclosure>>& list, int dimension) {
-    Json rows = Json::array();
-    for (const auto& [contact, term] : list) {
-        rows.push_back(Json::array({contact_to_json(contact, dimension), term.value, term.radius}));
-    }
-    return rows;
+    return array_of(list, [dimension](const auto& row) {
+        return Json::array({contact_to_json(row.first, dimension), row.second.value, row.second.radius});
+    });
 }
 
 Enclosure enclosure_from(const Field& value, const Field& bound) {

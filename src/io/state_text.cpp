@@ -27,11 +27,7 @@ double finite(double value, const char* field) {
 }
 
 template <class Range> Json numbers(const Range& values, const char* field) {
-    Json list = Json::array();
-    for (const double v : values) {
-        list.push_back(finite(v, field));
-    }
-    return list;
+    return json::array_of(values, [field](double value) { return finite(value, field); });
 }
 
 void append_numbers(std::string& text, std::span<const double> values, const char* field) {

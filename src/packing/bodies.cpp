@@ -4,8 +4,6 @@
 #include "packing/arc_bodies.hpp"
 #include "packing/words.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -53,7 +53,7 @@ struct PivotLimits {
 /// fails, or returns to the same contacts, a second attempt counts quantities that bounds cannot tell from 0 as 0, and
 /// replaces nearly dependent contacts by other touching pairs: packings of equal disks need this.
 /// When the last basis has computed gaps and forces of the right sign but `polish` cannot prove these in double-double,
-/// the state is in `candidate`: another proof may succeed. Failures beside those: `unbounded`, `not_converged`
+/// the state is in `candidate`: another proof may succeed. Failures besides these: `unbounded`, `not_converged`
 /// (limits), `interrupted`. Cost: a rank proof, a factorisation and a bound of the inverse per pivot.
 Result<Polished> pivot_to_vertex(const Packing& packing, const std::vector<Contact>& contacts, const Load& load,
                                  const PivotLimits& limits, long& iterations, std::optional<State>& candidate);

@@ -84,10 +84,7 @@ struct ContactProgramme::Rows {
     [[nodiscard]] std::size_t columns() const { return static_cast<std::size_t>(dofs.dof_count()); }
     /// A displacement of the columns, written for all coordinates.
     [[nodiscard]] std::vector<double> on_coordinates(const double* x) const {
-        std::vector<double> all(static_cast<std::size_t>(dofs.coordinate_count()), 0.0);
-        for (std::size_t c = 0; c < columns(); ++c) {
-            all[dofs.coordinate_of(c)] = x[c];
-        }
+        std::vector<double> all = dofs.on_coordinates({x, x + columns()});
         for (std::size_t k = 0; k < follows.size(); ++k) {
             const std::size_t first = all.size() - follows.size();
             all[first + k] = follows[k] * x[columns() - 1];

@@ -7,8 +7,6 @@
 #include "preparation/pair_forces.hpp"
 #include "preparation/scale.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>

@@ -69,12 +69,8 @@ void SoftNewton::collect() {
 
 bool SoftNewton::left_the_list() const {
     const double holds = reach / (packing_.dimension + 1);
-    for (std::size_t k = 0; k < anchor_.size(); ++k) {
-        if (std::abs(packing_.q[k] - anchor_[k]) > holds) {
-            return true;
-        }
-    }
-    return anchor_.empty();
+    return !std::ranges::equal(packing_.q, anchor_,
+                               [=](double now, double then) { return !(std::abs(now - then) > holds); });
 }
 
 void SoftNewton::evaluate() {

@@ -7,8 +7,6 @@
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/preparation/preparation.hpp>
 
-#include <fmt/format.h>
-
 namespace isostat::python {
 
 namespace {

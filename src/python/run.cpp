@@ -10,8 +10,6 @@
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
 
-#include <fmt/format.h>
-
 #include <atomic>
 #include <optional>
 

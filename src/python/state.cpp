@@ -11,8 +11,6 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/rigidity/counting.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace isostat::python {

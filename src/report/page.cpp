@@ -1,5 +1,6 @@
 #include "report/page.hpp"
 
+#include "core/dot.hpp"
 #include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
@@ -164,10 +165,7 @@ class Frames {
             return -1;
         }
         const std::vector<double> moved = difference(to, *from);
-        double longest = 0;
-        for (const double m : moved) {
-            longest = std::max(longest, std::abs(m));
-        }
+        const double longest = largest(moved);
         if (longest == 0) {
             return -1;
         }
@@ -211,10 +209,9 @@ class Frames {
 Json equilibria_json(const RunRecords& records) {
     Json object;
     for (const char* name : columns) {
-        Json& column = object[name] = Json::array();
-        for (const EquilibriumLine& line : records.equilibria) {
-            column.push_back(json::or_null(line.value.contains(name) ? line.at(name) : NAN));
-        }
+        object[name] = json::array_of(records.equilibria, [name](const EquilibriumLine& line) {
+            return json::or_null(line.value.contains(name) ? line.at(name) : NAN);
+        });
     }
     return object;
 }

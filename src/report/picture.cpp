@@ -303,10 +303,10 @@ void draw_scale(Canvas& canvas, const State& state, std::span<const double> forc
 } // namespace
 
 std::vector<unsigned char> rattler_flags(const State& state, std::span<const double> forces) {
-    assert(forces.size() == state.contacts.size());
+    assert(forces.empty() || forces.size() == state.contacts.size());
     const Bodies bodies(state.packing);
-    std::vector<unsigned char> flags(state.packing.radius.size(), 1);
-    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+    std::vector<unsigned char> flags(state.packing.radius.size(), forces.empty() ? 0 : 1);
+    for (std::size_t l = 0; l < forces.size(); ++l) {
         const Contact& contact = state.contacts[l];
         if (forces[l] == 0 || !contact.is_unilateral()) {
             continue;
@@ -325,11 +325,7 @@ std::vector<unsigned char> rattler_flags(const State& state, std::span<const dou
 std::string force_picture(const State& stored, std::span<const double> forces, const std::string& caption) {
     const State state = in_cell(stored);
     Canvas canvas(state);
-    std::vector<unsigned char> rattler(state.packing.radius.size(), 0);
-    if (!forces.empty()) {
-        rattler = rattler_flags(state, forces);
-    }
-    draw_disks(canvas, state, rattler);
+    draw_disks(canvas, state, rattler_flags(state, forces));
     draw_contacts(canvas, state, forces);
     draw_walls(canvas, state);
     draw_cell(canvas, state.packing);

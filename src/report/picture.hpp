@@ -43,7 +43,7 @@ inline constexpr const char* vtk_mark = "# vtk DataFile Version 3.0\n";
 std::string vtk_text(const State& state, std::span<const double> forces, const std::string& title,
                      std::span<const double> displacement = {});
 
-/// 1 for disks without a contact of non-zero force. \pre forces.size() == state.contacts.size()
+/// 1 for disks without a contact of non-zero force; 0 for all where there are no forces. \pre none, or one per contact
 std::vector<unsigned char> rattler_flags(const State& state, std::span<const double> forces);
 
 /// The same packing with its grains in the cell, and with the images that its contacts then have.

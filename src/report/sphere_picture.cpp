@@ -33,8 +33,7 @@ class Drawing {
   public:
     Drawing(State state, std::span<const double> forces) : state_(in_cell(std::move(state))), forces_(forces) {
         const Packing& packing = state_.packing;
-        const std::vector<unsigned char> rattler =
-            forces.empty() ? std::vector<unsigned char>(packing.radius.size(), 0) : rattler_flags(state_, forces);
+        const std::vector<unsigned char> rattler = rattler_flags(state_, forces);
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
             balls_.push_back({centre_of(packing, static_cast<int>(i)), packing.radius[i], rattler[i] != 0});
         }

@@ -118,10 +118,7 @@ std::string vtk_text(const State& state, std::span<const double> forces, const s
         points.push_back(centre_of(state.packing, static_cast<int>(i)));
     }
     const VtkLines contacts = vtk_lines(state, forces, points);
-    std::vector<unsigned char> rattler(grains, 0);
-    if (!forces.empty()) {
-        rattler = rattler_flags(state, forces);
-    }
+    std::vector<unsigned char> rattler = rattler_flags(state, forces);
     rattler.resize(points.size(), 0);
     // VTK allows titles of one line of at most 256 characters.
     std::string text = fmt::format("{}{}\nASCII\nDATASET POLYDATA\nPOINTS {} double\n", vtk_mark,
@@ -138,10 +135,7 @@ std::string vtk_text(const State& state, std::span<const double> forces, const s
     std::vector<int> count = contacts_of_grains(state);
     count.resize(points.size(), 0);
     text += fmt::format("SCALARS contacts int 1\nLOOKUP_TABLE default\n{}\n", fmt::join(count, "\n"));
-    text += "SCALARS rattler int 1\nLOOKUP_TABLE default\n";
-    for (const unsigned char flag : rattler) {
-        text += fmt::format("{}\n", static_cast<int>(flag));
-    }
+    text += fmt::format("SCALARS rattler int 1\nLOOKUP_TABLE default\n{}\n", fmt::join(rattler, "\n"));
     if (state.packing.dimension != plane) {
         text += "SCALARS tube double 1\nLOOKUP_TABLE default\n";
         for (const double r : contacts.tube) {

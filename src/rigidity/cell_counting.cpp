@@ -161,8 +161,8 @@ StrainCounts count_strains(const Packing& packing, const std::vector<Contact>& c
     const auto matrix = exact_strained_matrix(packing, contacts, Strain::full);
     const int disks = matrix.rows - strain_count(Strain::full, packing.dimension);
     std::array<int, strains.size()> ends{};
-    std::transform(strains.begin(), strains.end(), ends.begin(),
-                   [&](Strain strain) { return disks + strain_count(strain, packing.dimension); });
+    std::ranges::transform(strains, ends.begin(),
+                           [&](Strain strain) { return disks + strain_count(strain, packing.dimension); });
     const std::vector<int> ranks = exact::ranks_of_first_rows(matrix, ends);
     StrainCounts counts;
     for (std::size_t k = 0; k < counts.size(); ++k) {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <tuple>
 
 namespace isostat {
@@ -48,7 +47,7 @@ std::vector<int> shared_levels(const Packing& packing, const std::vector<Contact
             held.push_back({{k % packing.dimension, false, packing.q[static_cast<std::size_t>(k)]}, k});
         }
     }
-    std::sort(held.begin(), held.end());
+    std::ranges::sort(held);
     std::vector<int> level;
     for (std::size_t first = 0, last = 0; first < held.size(); first = last) {
         for (last = first; last < held.size() && held[last].first == held[first].first; ++last) {
@@ -173,7 +172,7 @@ ContactPattern::ContactPattern(const Packing& packing, const DofMap& dofs, const
 }
 
 ContactPattern::View ContactPattern::for_load(std::span<const int> rows) const {
-    const bool on_disks = std::any_of(rows.begin(), rows.end(), [this](int row) { return row < rows_of_disks_; });
+    const bool on_disks = std::ranges::any_of(rows, [this](int row) { return row < rows_of_disks_; });
     return own_ && !on_disks ? View{own_->start, own_->row, own_->matched} : View{*start_, *row_, *matched_};
 }
 
@@ -250,7 +249,7 @@ std::vector<unsigned char> ContactPattern::carrying_by_sums(const DofMap& dofs, 
     std::vector<unsigned char> nonzero = carrying(rows);
     if (!sums.matched.empty()) {
         const auto by_sums = sparse::structural_nonzeros(sums.start, sums.row, sums.matched, rows);
-        std::transform(by_sums.begin(), by_sums.end(), nonzero.begin(), nonzero.begin(), std::bit_and<>());
+        std::ranges::transform(by_sums, nonzero, nonzero.begin(), std::bit_and<>());
     }
     return nonzero;
 }

@@ -84,7 +84,7 @@ Counting without_bars(Counting all, int bars) {
 
 int bar_count(const std::vector<Contact>& contacts) {
     return static_cast<int>(
-        std::count_if(contacts.begin(), contacts.end(), [](const Contact& c) { return c.kind == ContactKind::bar; }));
+        std::ranges::count_if(contacts, [](const Contact& c) { return c.kind == ContactKind::bar; }));
 }
 
 } // namespace isostat

@@ -2,6 +2,7 @@
 
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
+#include "core/dot.hpp"
 #include "core/work.hpp"
 #include "exact/rank.hpp"
 
@@ -35,11 +36,7 @@ inline PerAxis<double> unit_normal(const Packing& packing, const Contact& contac
         return {};
     }
     PerAxis<double> normal = separation(packing.layout(), packing.q, contact);
-    double square = 0;
-    for (const double component : normal) {
-        square += component * component;
-    }
-    const double length = std::sqrt(square);
+    const double length = euclidean_norm(normal);
     if (!(length > 0x1p-450 && length < 0x1p500)) { // squares under- or overflow
         return direction(normal);
     }

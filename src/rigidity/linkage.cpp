@@ -130,7 +130,7 @@ class Linkage {
             const int to = nodes[(k + 1) % nodes.size()];
             cell.way.emplace_back(edge(from, to), from < to ? 1 : -1);
         }
-        std::sort(cell.way.begin(), cell.way.end());
+        std::ranges::sort(cell.way);
         cells_.push_back(std::move(cell));
     }
 
@@ -251,7 +251,7 @@ bool moves_as_linkage(const Packing& packing, const std::vector<Contact>& among,
     const auto foreign = [&](const Contact& c) {
         return c.kind == ContactKind::held || stands(c.i) || (c.of_disks() && (c.i == c.j || stands(c.j)));
     };
-    if (std::any_of(all.begin(), all.end(), foreign)) {
+    if (std::ranges::any_of(all, foreign)) {
         return false;
     }
     const auto touching = unwound(packing.disk_count(), std::move(all));

@@ -89,7 +89,7 @@ bool moves_as_one(const DofMap& dofs, int disks, const std::vector<Contact>& amo
 }
 
 std::optional<std::vector<Contact>> unwound(int disks, std::vector<Contact> contacts) {
-    const auto any = [&](auto what) { return std::any_of(contacts.begin(), contacts.end(), what); };
+    const auto any = [&](auto what) { return std::ranges::any_of(contacts, what); };
     if (any([](const Contact& c) { return c.kind == ContactKind::held || c.kind == ContactKind::bar; })) {
         return std::nullopt;
     }

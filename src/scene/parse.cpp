@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <limits>
 
 namespace isostat {
@@ -201,19 +202,16 @@ void read_loaded(SceneSection& section, Scene& scene) {
     if (prepares && in_plane) {
         words = {"y", "tilt"};
     } else {
-        for (const Protocol& protocol : protocols) {
-            words.emplace_back(protocol.word);
-        }
+        std::ranges::transform(protocols, std::back_inserter(words), &Protocol::word);
     }
     if (!prepares) {
         words.emplace_back("tilt");
     }
     const std::size_t place = section.word("loaded", 0, words);
     scene.loaded = words[place];
-    for (const Protocol& protocol : protocols) {
-        if (scene.loaded == protocol.word) {
-            scene.path = protocol.path;
-        }
+    if (const auto* const found = std::ranges::find(protocols, scene.loaded, &Protocol::word);
+        found != protocols.end()) {
+        scene.path = found->path;
     }
     if (!prepares || !scene.path.empty()) {
         return;
@@ -425,42 +423,32 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
     Scene scene;
     scene.file = source;
     scene.text = text;
-    const auto section = [&](const char* name) {
-        return SceneSection(table_of(document, name, source), name, source, scene.settings);
+    const auto read = [&](const char* name, const auto& fill) {
+        SceneSection section(table_of(document, name, source), name, source, scene.settings);
+        fill(section, scene);
+        section.finish();
     };
     if (table_of(document, "packing", source) == nullptr) {
         refuse(source, "has no [packing]: expected one with file, disks, radii or radii_file, or spheres");
     }
-    SceneSection packing = section("packing");
-    read_packing(packing, scene, folder);
-    packing.finish();
+    read("packing", [&](SceneSection& section, Scene& made) { read_packing(section, made, folder); });
     if (table_of(document, "cell", source) != nullptr) {
-        SceneSection cell = section("cell");
-        read_cell(cell, scene);
-        cell.finish();
+        read("cell", read_cell);
     }
-    SceneSection preparation = section("preparation");
     if (scene.start.empty()) {
-        read_preparation(preparation, scene);
-        preparation.finish();
-    } else if (const toml::node* node = document.get("preparation")) {
+        read("preparation", read_preparation);
+    } else if (const toml::table* table = table_of(document, "preparation", source)) {
         refuse(ErrorKind::bad_input, "{}:{}: [preparation] has no meaning: the packing is read from a file", source,
-               node->source().begin.line);
+               table->source().begin.line);
     }
-    SceneSection load = section("load");
-    read_load(load, scene);
-    load.finish();
+    read("load", read_load);
     read_programme(document, scene);
-    SceneSection run = section("run");
-    read_run(run, scene);
-    run.finish();
+    read("run", read_run);
     if (scene.run.certify == CertifyLevel::arcs && load_at_start(scene).path) {
         refuse(source, "certify = \"arcs\" in [run] and several stresses that change together: expected \"decisions\" "
                        "or \"states\", arcs are enclosed under loads with one");
     }
-    SceneSection output = section("output");
-    read_output(output, scene);
-    output.finish();
+    read("output", read_output);
     std::optional<double> ratio;
     if (scene.start.empty()) {
         const Load load = load_at_start(scene);

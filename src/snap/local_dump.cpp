@@ -1,8 +1,6 @@
 // Reads rows of pairs: LAMMPS dumps of style local, and tables.
 #include "snap/frame_file.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 

@@ -37,9 +37,8 @@ void take_backbone(const SoftState& soft, Snap& out) {
     }
     out.backbone.packing = of_disks(soft.packing, out.disks);
     const Packing& packing = out.backbone.packing;
-    for (const Contact& c : soft.contacts) {
-        out.backbone.contacts.push_back(renumbered(c, number));
-    }
+    std::ranges::transform(soft.contacts, std::back_inserter(out.backbone.contacts),
+                           [&](const Contact& c) { return renumbered(c, number); });
     out.backbone.load = soft.load;
     out.backbone.load.disk_force.clear();
     // Where several forces vanish together for structural reasons, the end of the interval depends on these loads.

@@ -12,8 +12,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
+#include <ranges>
 
 namespace isostat::compare {
 
@@ -201,13 +203,10 @@ SoftList list_by_forces(const std::string& file, const Packing& packing, const s
     const std::string beside = packing.cell.all() ? "" : fmt::format(", {} overlaps with walls", walls.size());
     out.words = fmt::format("{} pairs with a force in {}{}{}, without rattlers{}", pairs, contacts, parts, beside,
                             walls_apart(packing));
-    for (const auto& [contact, force] : forces) {
-        out.contacts.push_back(contact);
-    }
-    out.contacts = able_to_carry(packing, out.contacts);
-    for (const Contact& contact : out.contacts) {
-        out.forces.push_back(forces.at(contact));
-    }
+    const auto listed = forces | std::views::keys;
+    out.contacts = able_to_carry(packing, {listed.begin(), listed.end()});
+    std::ranges::transform(out.contacts, std::back_inserter(out.forces),
+                           [&](const Contact& c) { return forces.at(c); });
     return out;
 }
 

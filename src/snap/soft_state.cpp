@@ -3,8 +3,6 @@
 #include "snap/backbone.hpp"
 #include "snap/soft_list.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -35,12 +35,8 @@ class Surplus {
     [[nodiscard]] const Eigen::SparseMatrix<double>& matrix() const { return h_; }
 
     Vector load(const Load& load, const Packing& packing) const {
-        const std::vector<double> all = load.external_force(packing);
-        Vector out(dofs_.dof_count());
-        for (int i = 0; i < dofs_.dof_count(); ++i) {
-            out[i] = all[static_cast<std::size_t>(dofs_.coordinate_of(i))];
-        }
-        return out;
+        const std::vector<double> force = on_dofs(load.external_force(packing), dofs_);
+        return Eigen::Map<const Vector>(force.data(), dofs_.dof_count());
     }
     /// The smallest change of forces that balances a load.
     [[nodiscard]] Vector smallest(const Vector& load) const { return h_.transpose() * normal_.solve(load); }

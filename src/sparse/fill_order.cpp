@@ -80,7 +80,7 @@ int columns(int n, int* start, int* row, int* order, klu_common* /*common*/) {
     try {
         const std::vector<int> found =
             dissection_of_columns(n, {start, size + 1}, {row, static_cast<std::size_t>(start[n])});
-        std::copy(found.begin(), found.end(), order);
+        std::ranges::copy(found, order);
     } catch (const std::bad_alloc&) {
         return 0;
     }

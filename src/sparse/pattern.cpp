@@ -62,7 +62,7 @@ std::vector<int> perfect_matching(int n, std::span<const int> start, std::span<c
 
 std::vector<int> repaired_matching(std::vector<int> matched, std::span<const int> start, std::span<const int> row,
                                    int column) {
-    const auto free_row = std::find(matched.begin(), matched.end(), column) - matched.begin();
+    const auto free_row = std::ranges::find(matched, column) - matched.begin();
     // Breadth-first search from the column along alternating edges: came_from[r] is the column that reached row r.
     std::vector<int> came_from(matched.size(), -1);
     std::vector<int> row_of(matched.size()); // row of each column in the queue

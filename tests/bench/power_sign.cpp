@@ -17,8 +17,6 @@
 #include "verified/configuration.hpp"
 #include "verified/vertex_bounds.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -291,8 +289,7 @@ bool move_to_end(Packing& packing, const ArcRecord& arc) {
     const auto moves = [&](std::size_t k) {
         const std::size_t cell = packing.length_at(0);
         const std::size_t grain = k < cell ? k / packing.axes() : packing.radius.size() + k - cell;
-        return witness.whole ||
-               std::find(witness.grains.begin(), witness.grains.end(), static_cast<int>(grain)) != witness.grains.end();
+        return witness.whole || std::ranges::find(witness.grains, static_cast<int>(grain)) != witness.grains.end();
     };
     const DofMap dofs(packing);
     std::size_t next = 0;
@@ -311,8 +308,7 @@ bool count(const State& start, const bench::Stretch& stretch, int passes, Counts
     std::vector<Contact> contacts = start.contacts;
     std::unique_ptr<Point> before;
     for (const ArcRecord& arc : stretch.arcs) {
-        const auto slot =
-            static_cast<std::size_t>(std::find(contacts.begin(), contacts.end(), arc.opened) - contacts.begin());
+        const auto slot = static_cast<std::size_t>(std::ranges::find(contacts, arc.opened) - contacts.begin());
         Load load = start.load;
         load.set_loaded_stress(arc.stress);
         const Vector force = arc.kind == ArcKind::rattler ? load.infinitesimal : load.external_force(at);

@@ -184,12 +184,7 @@ int main(int argc, char** argv) {
         auto state = prepare(options, report);
         if (state.ok()) {
             const Packing& packing = state.value().packing;
-            const std::vector<double> on_coordinates = state.value().load.external_force(packing);
-            const DofMap dofs(packing);
-            std::vector<double> force;
-            for (int mu = 0; mu < dofs.dof_count(); ++mu) {
-                force.push_back(on_coordinates[static_cast<std::size_t>(dofs.coordinate_of(mu))]);
-            }
+            std::vector<double> force = on_dofs(state.value().load.external_force(packing), DofMap(packing));
             // Rattlers carry nothing under the walls' load alone: a weight on every disk.
             for (std::size_t i = 1; i + 2 < force.size(); i += 2) {
                 force[i] -= 1e-3;

@@ -1,6 +1,8 @@
 // Claims against the true vertex to 200 digits and against closed forms; states about which less can be said.
 #include "oracle/claims.hpp"
 #include "support/crafted.hpp"
+#include "support/free_grains.hpp"
+#include "support/units.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
@@ -63,7 +65,7 @@ bool check_claims(const State& state, const Certification& c, int open = 0) {
     BOOST_TEST(claims.vertex->radius <= claims.vertex->unique_radius);
     for (std::size_t l = 0; claims.forces && l < n; ++l) {
         const auto& zeros = claims.forces->structural_zeros;
-        const bool zero = std::find(zeros.begin(), zeros.end(), static_cast<int>(l)) != zeros.end();
+        const bool zero = std::ranges::find(zeros, static_cast<int>(l)) != zeros.end();
         const Interval& f = claims.forces->finite[l];
         BOOST_TEST((zero ? f == Interval{0, 0} : f.lower > 0), to_string(state.contacts[l]));
     }
@@ -95,19 +97,14 @@ State shaken(State state, double size, unsigned seed) {
 /// A free disk of radius 1 held by two fixed ones on its left and right, a little below it (height h), under a force
 /// that presses it down.
 State between_two(double h) {
-    State state;
-    state.packing.walls = Walls::none();
     const double side = std::sqrt(1 + h * h) * 2 - 1;
-    state.packing.radius = {side, side, 1};
-    state.packing.q = {-2, 0, 2, 0, 0, 2 * h, 0, 0};
-    state.packing.fixed = {1, 1, 0};
+    State state = crafted::held_by_two({side, side, 1}, {-2, 0, 2, 0, 0, 2 * h});
     state.load.stress = {1, 1};
     state.load.reference_length = {1, 1};
     state.load.disk_force = {0, 0, 0, 0, 0.25, -1};
     if (h < 0.3) {
         state.load.disk_force[4] = 0;
     }
-    state.contacts = {pair(0, 2), pair(1, 2)};
     return state;
 }
 
@@ -316,9 +313,7 @@ BOOST_AUTO_TEST_CASE(negative_forces_refute_and_so_does_a_rattler_pulled_off_its
     BOOST_REQUIRE((before.claims.forces && !before.claims.forces->structural_zeros.empty()));
     const auto zero = static_cast<std::size_t>(before.claims.forces->structural_zeros.front());
     const auto rattler = static_cast<std::size_t>(rattling.contacts[zero].i);
-    for (double& g : rattling.load.infinitesimal) {
-        g = -g;
-    }
+    std::ranges::transform(rattling.load.infinitesimal, rattling.load.infinitesimal.begin(), std::negate());
     const Certification after = certify(rattling);
     BOOST_TEST((after.verdict == Verdict::refuted), "the rattler " << rattler << " and all others are pulled up");
     BOOST_TEST(!after.claims.forces);
@@ -352,9 +347,7 @@ BOOST_AUTO_TEST_CASE(claims_scale_with_the_units_and_end_where_doubles_do) {
     for (const auto& [length, stress] :
          {std::pair(200, -200), std::pair(-200, 300), std::pair(320, -320), std::pair(-330, 330)}) {
         State scaled = state;
-        const auto stretch = [l = length](double& x) { x = std::ldexp(x, l); };
-        std::for_each(scaled.packing.radius.begin(), scaled.packing.radius.end(), stretch);
-        std::for_each(scaled.packing.q.begin(), scaled.packing.q.end(), stretch);
+        units::stretch(scaled.packing, std::ldexp(1.0, length));
         for (double& s : scaled.load.stress) {
             s = std::ldexp(s, stress); // reference lengths stay 1: forces scale with the stress
         }
@@ -370,9 +363,7 @@ BOOST_AUTO_TEST_CASE(claims_scale_with_the_units_and_end_where_doubles_do) {
     // Squares of these lengths are 0 or infinite in doubles: nothing may be concluded from them.
     for (const int length : {-560, -400, 400, 560}) {
         State scaled = state;
-        const auto stretch = [length](double& x) { x = std::ldexp(x, length); };
-        std::for_each(scaled.packing.radius.begin(), scaled.packing.radius.end(), stretch);
-        std::for_each(scaled.packing.q.begin(), scaled.packing.q.end(), stretch);
+        units::stretch(scaled.packing, std::ldexp(1.0, length));
         const Certification c = certify(scaled);
         BOOST_TEST((c.verdict == Verdict::undecided));
         BOOST_TEST((!c.claims.counting && !c.claims.vertex && !c.claims.stable));

@@ -4,6 +4,7 @@
 #include "packing/bodies.hpp"
 #include "support/clumps.hpp"
 #include "support/test.hpp"
+#include "support/units.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/result.hpp>
@@ -18,9 +19,7 @@ bool lies_within(const Interval& interval, double value) {
 }
 
 Inspection inspected(const State& state) {
-    auto result = inspect_vertex(with_free_motions_held(state));
-    BOOST_TEST_REQUIRE(result.ok(), (result.ok() ? "" : result.failure().message()));
-    return result.value();
+    return required(inspect_vertex(with_free_motions_held(state)));
 }
 
 const std::vector<std::string> unions{"dimer_20_1",  "dimer_20_2",  "dimer_20_3",  "dimer2_20_1", "dimer2_20_2",
@@ -110,12 +109,7 @@ BOOST_AUTO_TEST_CASE(a_body_held_at_one_member_is_a_rotational_rattler_by_counti
 /// Beyond 1e100 no bound counts: nothing is claimed, and nothing is refuted.
 BOOST_AUTO_TEST_CASE(a_clump_of_lengths_beyond_the_bounds_is_undecided) {
     State state = with_free_motions_held(disk_with_a_dangling_member());
-    for (std::vector<double>* const lengths : {&state.packing.q, &state.packing.radius}) {
-        for (double& x : *lengths) {
-            x *= 0x1p400;
-        }
-    }
-    state.packing.bars[0].length *= 0x1p400;
+    units::stretch(state.packing, 0x1p400);
     BOOST_TEST((certify(state).verdict == Verdict::undecided));
     const auto result = inspect_vertex(state);
     BOOST_TEST((result.ok() ? result.value().record.verdict == Verdict::undecided
@@ -229,8 +223,7 @@ BOOST_AUTO_TEST_CASE(several_mechanisms_have_a_minimum_together_or_none) {
         BOOST_TEST((inspected(turned).stable == Verdict::refuted));
     }
     State touching = two; // a pair that touches beside the contacts leaves no way
-    touching.contacts.erase(
-        std::find(touching.contacts.begin(), touching.contacts.end(), Contact{ContactKind::disk_disk, 0, 2}));
+    touching.contacts.erase(std::ranges::find(touching.contacts, Contact{ContactKind::disk_disk, 0, 2}));
     BOOST_TEST((inspected(touching).stable != Verdict::proved));
 }
 
@@ -482,12 +475,7 @@ BOOST_AUTO_TEST_CASE(an_oval_between_four_walls_rests_up_to_the_ratio_of_its_arm
 BOOST_AUTO_TEST_CASE(the_unit_of_length_of_an_oval_does_not_matter) {
     for (const double unit : {0x1p-300, 0x1p300}) {
         State state = oval_in_a_box(1, 1);
-        for (std::vector<double>* lengths : {&state.packing.q, &state.packing.radius}) {
-            std::transform(lengths->begin(), lengths->end(), lengths->begin(), [&](double x) { return x * unit; });
-        }
-        for (isostat::Bar& bar : state.packing.bars) {
-            bar.length *= unit;
-        }
+        units::stretch(state.packing, unit);
         BOOST_TEST((inspected(state).stable == Verdict::proved), unit);
     }
 }

@@ -3,9 +3,11 @@
 #include "certificate/reach.hpp"
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
+#include "core/dot.hpp"
 #include "oracle/random.hpp"
 #include "support/cells.hpp"
 #include "support/crafted.hpp"
+#include "support/free_grains.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/certificate/certify.hpp>
@@ -15,17 +17,6 @@ using namespace isostat;
 using namespace crafted;
 
 namespace {
-
-State pushed(State state, double size) {
-    for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
-        state.packing.q[k] += size * std::sin(7.0 * static_cast<double>(k));
-    }
-    return state;
-}
-
-double norm_of(const std::vector<double>& x) {
-    return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0));
-}
 
 void check_above(double value, double least, double slack) {
     BOOST_TEST(value >= least * (1 - 1e-12), value << " is below " << least);
@@ -50,7 +41,7 @@ struct Worse {
         for (const Contact& c : state.contacts) {
             f.push_back(gap(state.packing, c)); // F = gap (1 + gap / 2 D)
         }
-        residual = norm_of(f);
+        residual = euclidean_norm(f);
         beta = std::sqrt(h / (k * residual));
         radius = 1.18 * beta * residual;
         centre->neighbourhood.inverse_norm = beta;
@@ -59,7 +50,7 @@ struct Worse {
     }
     /// max_i sum |x_l| / D_l: only one contact has two disks.
     [[nodiscard]] double weight(const std::vector<double>& x) const {
-        const auto l = std::find(state.contacts.begin(), state.contacts.end(), pair(0, 1)) - state.contacts.begin();
+        const auto l = std::ranges::find(state.contacts, pair(0, 1)) - state.contacts.begin();
         return std::abs(x[static_cast<std::size_t>(l)]) / 3;
     }
     [[nodiscard]] std::vector<double> middle(const std::vector<Interval>& x) const {
@@ -104,8 +95,7 @@ BOOST_AUTO_TEST_CASE(the_centre_has_the_constants_of_V4) {
                 ++count[j];
             }
         }
-        check_above(centre.neighbourhood.lipschitz,
-                    2 * std::sqrt(*std::max_element(count.begin(), count.end())) / smallest, 1e-12);
+        check_above(centre.neighbourhood.lipschitz, 2 * std::sqrt(*std::ranges::max_element(count)) / smallest, 1e-12);
         check_above(centre.neighbourhood.inverse_norm * centre.inverse.sigma_min, 1 / (1 - ratio), 3 * ratio + 1e-12);
         BOOST_TEST(centre.neighbourhood.inverse_norm * centre.inverse.sigma_min >= 1 + 2 * ratio);
         BOOST_TEST(centre.largest_gap >= largest);
@@ -140,16 +130,11 @@ BOOST_AUTO_TEST_CASE(the_stored_point_is_within_the_radius_claimed) {
     const auto vertex = in_double_double(*worse.subject, *worse.centre);
     BOOST_TEST_REQUIRE(vertex->exists());
     std::vector<double> step;
-    for (const Contact& c : worse.state.contacts) {
-        step.push_back(gap(worse.state.packing, c));
-    }
+    std::ranges::transform(worse.state.contacts, std::back_inserter(step),
+                           [&](const Contact& c) { return gap(worse.state.packing, c); });
     worse.centre->factorisation.solve_velocities(step);
-    double largest = 0;
-    for (const double s : step) {
-        largest = std::max(largest, std::abs(s));
-    }
-    check_above(vertex->radius(), largest * (1 - 1e-6), 1e-3);
-    check_above(vertex->distance(), norm_of(step) * (1 - 1e-6), 1e-3);
+    check_above(vertex->radius(), largest(step) * (1 - 1e-6), 1e-3);
+    check_above(vertex->distance(), euclidean_norm(step) * (1 - 1e-6), 1e-3);
 }
 
 BOOST_AUTO_TEST_CASE(forces_have_the_bound_of_V6) {
@@ -174,9 +159,8 @@ BOOST_AUTO_TEST_CASE(ends_of_the_interval_have_the_bound_of_V7) {
         const std::vector<double> b = worse.slopes();
         const double a_bound = (worse.vertex->forces()[0].upper - worse.vertex->forces()[0].lower) / 2;
         const double b_bound = 2 * worse.weight(b) * worse.radius / worse.vertex->sigma_min();
-        const auto opens = static_cast<std::size_t>(
-            std::find(worse.state.contacts.begin(), worse.state.contacts.end(), high.claim->opens) -
-            worse.state.contacts.begin());
+        const auto opens = static_cast<std::size_t>(std::ranges::find(worse.state.contacts, high.claim->opens) -
+                                                    worse.state.contacts.begin());
         const double t = f[opens] / b[opens];
         const double least = (a_bound + std::abs(t) * b_bound) / (std::abs(b[opens]) - b_bound);
         BOOST_TEST(b_bound > 1e-3 * std::abs(b[opens])); // so that every term counts
@@ -189,9 +173,7 @@ BOOST_AUTO_TEST_CASE(pairs_beyond_the_list_are_as_far_as_its_reach_less_the_way_
     // nearer than that. Disk 6 carries so little that the vertex is known in double-double, hence far better than
     // 1e-10.
     State state;
-    state.packing.walls = Walls::none();
-    state.packing.radius = {3, 3, 2, 1, 3, 3, 2};
-    state.packing.q = {-3, 0, 3, 0, 0, 4 + 1e-10, 0, 0, -3, -90, 3, -90, 0, -86, 0, 0};
+    state.packing = free_grains({3, 3, 2, 1, 3, 3, 2}, {-3, 0, 3, 0, 0, 4 + 1e-10, 0, 0, -3, -90, 3, -90, 0, -86});
     state.packing.fixed = {1, 1, 0, 1, 1, 1, 0};
     state.load.disk_force = {0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0, 0, -1e-25};
     state.contacts = {pair(0, 2), pair(1, 2), pair(4, 6), pair(5, 6)};
@@ -271,11 +253,8 @@ BOOST_AUTO_TEST_CASE(true_stresses_on_a_sphere_press_on_the_areas_of_the_true_ve
 
 BOOST_AUTO_TEST_CASE(periods_in_space_are_stretched_as_little_as_C4_counts_on) {
     oracle::Random random(8);
-    Packing packing; // one sphere, which has no extent
-    packing.dimension = packing.cell.dimension = 3;
-    packing.walls = Walls::none();
-    packing.radius = {1};
-    double nearest = 0; // of the least stretch found to the bound
+    Packing packing = free_grains({1}, {}, 3); // one sphere, which has no extent
+    double nearest = 0;                        // of the least stretch found to the bound
     for (int trial = 0; trial < 200; ++trial) {
         packing.q.assign(9, 0.0);
         for (std::size_t a = 0; a < 3; ++a) {

@@ -218,7 +218,7 @@ inline int try_all(const fs::path& run, int most, Counts& counts) {
             names.push_back(fs::relative(entry.path(), run).string());
         }
     }
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     std::map<std::string, Budget> budgets;
     int all = 0;
     const std::string checkpoint = scratch::read(run / "checkpoint.json");

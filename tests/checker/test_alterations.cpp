@@ -88,12 +88,11 @@ std::vector<ClaimAlteration> alterations_of_claims(const Certificate& original) 
         add(which + " below", [=](Certificate& c) {
             c.claims.forces->finite[l].lower -= 2 * width, c.claims.forces->finite[l].upper -= 2 * width;
         });
-        const bool zero =
-            std::binary_search(forces.structural_zeros.begin(), forces.structural_zeros.end(), static_cast<int>(l));
+        const bool zero = std::ranges::binary_search(forces.structural_zeros, static_cast<int>(l));
         if (!zero) {
             add(which + " as a structural zero", [=](Certificate& c) {
                 auto& zeros = c.claims.forces->structural_zeros;
-                const auto at = std::lower_bound(zeros.begin(), zeros.end(), static_cast<int>(l));
+                const auto at = std::ranges::lower_bound(zeros, static_cast<int>(l));
                 c.claims.forces->infinitesimal.insert(c.claims.forces->infinitesimal.begin() + (at - zeros.begin()),
                                                       Interval{-huge, huge});
                 zeros.insert(at, static_cast<int>(l));
@@ -282,7 +281,7 @@ std::vector<ClaimAlteration> alterations_of_the_cell(const Certificate& original
             ->image;
     };
     add("image changed", [](Certificate& c) {
-        std::int8_t& across = std::find_if(c.state.contacts.begin(), c.state.contacts.end(), [](const Contact& l) {
+        std::int8_t& across = std::ranges::find_if(c.state.contacts, [](const Contact& l) {
                                   return l.kind == ContactKind::disk_disk;
                               })->image.m[1];
         across = across == 1 ? 0 : 1;

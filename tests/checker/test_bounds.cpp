@@ -188,9 +188,7 @@ BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap) {
         state.packing.radius[0] = 3;
         state.packing.radius[1] = 2.9;
         state.packing.q.resize(2 * disks + 2);
-        for (double& x : state.packing.q) {
-            x = place(random);
-        }
+        std::ranges::generate(state.packing.q, [&] { return place(random); });
         state.packing.length(0) = 100;
         state.packing.length(1) = 100;
         const std::vector<Contact> pairs = oracle::all_pairs(state.packing);

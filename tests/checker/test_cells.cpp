@@ -72,8 +72,7 @@ BOOST_AUTO_TEST_CASE(claims_do_not_depend_on_pin_or_representatives) {
         for (const std::size_t end : {0U, 1U}) { // the same contact by its new name
             LoadEndClaim& claim =
                 end == 0 ? certificate.claims.load_interval->low : certificate.claims.load_interval->high;
-            const auto at =
-                std::find(state.contacts.begin(), state.contacts.end(), claim.opens) - state.contacts.begin();
+            const auto at = std::ranges::find(state.contacts, claim.opens) - state.contacts.begin();
             claim.opens = other.contacts[static_cast<std::size_t>(at)];
         }
         are_proved(verify(certificate));

@@ -45,8 +45,7 @@ struct ForgedExchange {
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_forged_choice_is_refused, scratch::InFolder) {
     State state = crafted::mirror_forces();
     state.perturbation.emplace();
     state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
@@ -132,8 +131,7 @@ BOOST_AUTO_TEST_CASE(bounds_so_wide_that_they_say_nothing_are_no_evidence_of_a_t
 }
 
 /// No record says how an end of the interval was chosen, and each of them ends it (C1 b).
-BOOST_AUTO_TEST_CASE(a_row_may_name_any_of_the_forces_that_vanish_at_an_end) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_row_may_name_any_of_the_forces_that_vanish_at_an_end, scratch::InFolder) {
     play(crafted::mirror_forces(), -1, folder);
     BOOST_TEST((verify_run(folder).verdict == Verdict::proved));
     const std::string rows = scratch::read(folder / "equilibria.csv");
@@ -143,8 +141,7 @@ BOOST_AUTO_TEST_CASE(a_row_may_name_any_of_the_forces_that_vanish_at_an_end) {
     BOOST_TEST((other.verdict == Verdict::proved), (other.undecided.empty() ? other.wrong : other.undecided[0]));
 }
 
-BOOST_AUTO_TEST_CASE(the_way_of_a_square_of_disks_is_replayed) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(the_way_of_a_square_of_disks_is_replayed, scratch::InFolder) {
     play(crafted::square(), 3, folder);
     const RunVerification run = verify_run(folder);
     BOOST_TEST(run.wrong == "");
@@ -155,8 +152,8 @@ BOOST_AUTO_TEST_CASE(the_way_of_a_square_of_disks_is_replayed) {
 }
 
 /// Bounds of its records end next to the number: the checker needs more digits than its usual ones.
-BOOST_AUTO_TEST_CASE(rows_that_change_their_lists_where_they_are_and_spread_are_replayed_and_proved) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(rows_that_change_their_lists_where_they_are_and_spread_are_replayed_and_proved,
+                        scratch::InFolder) {
     State state = crafted::pile(5, 4);
     state.load.reference_length = {16, 4}; // the same forces; strains stay below the cap
     state.load.stress = {0.25, 0.25};
@@ -183,8 +180,7 @@ BOOST_AUTO_TEST_CASE(rows_that_change_their_lists_where_they_are_and_spread_are_
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused, scratch::InFolder) {
     State state = crafted::mirror_gaps();
     state.perturbation.emplace();
     state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
@@ -202,8 +198,7 @@ BOOST_AUTO_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused) {
     BOOST_TEST((as_many.verdict == Verdict::proved));
 }
 
-BOOST_AUTO_TEST_CASE(a_forged_exchange_at_second_order_is_refused) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_forged_exchange_at_second_order_is_refused, scratch::InFolder) {
     play(crafted::two_crests(true), -1, folder);
     const RunVerification run = played::proved(folder);
     BOOST_TEST(run.equilibria_proved == 2);
@@ -222,8 +217,8 @@ BOOST_AUTO_TEST_CASE(a_forged_exchange_at_second_order_is_refused) {
 }
 
 /// The rows of a lattice sink until they lie in line: the contacts that the run would keep are dependent there.
-BOOST_AUTO_TEST_CASE(a_list_that_is_exchanged_for_the_end_of_an_arc_is_proved_and_a_forged_one_refused) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_list_that_is_exchanged_for_the_end_of_an_arc_is_proved_and_a_forged_one_refused,
+                        scratch::InFolder) {
     play(crafted::triangular(3, 4), 20, folder);
     const RunVerification run = played::proved(folder);
     const ForgedExchange forged{folder, exchange_in(scratch::read(folder / "events.jsonl"), "end")};

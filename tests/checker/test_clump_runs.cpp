@@ -108,8 +108,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_of_dimers_run_and_are_proved) {
 }
 
 /// The last equilibrium supports every load, though by their patterns most forces could change with it.
-BOOST_AUTO_TEST_CASE(a_run_of_dimers_is_proved_up_to_the_column_that_supports_every_load) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_run_of_dimers_is_proved_up_to_the_column_that_supports_every_load, scratch::InFolder) {
     const SegmentOutcome outcome = played::into(folder / "run", at_the_start(test::clumps("dimer_20_2")), {towards(30)},
                                                 {.max_strain = 1e9}, true);
     BOOST_TEST_REQUIRE(outcome.failure.has_value());
@@ -133,8 +132,7 @@ BOOST_AUTO_TEST_CASE(runs_are_proved_where_two_contacts_of_a_body_bear_one_force
 }
 
 /// What differs in the body makes another run: of a state file the bars are compared with those of the replay.
-BOOST_AUTO_TEST_CASE(a_stored_state_with_another_bar_is_refuted) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_stored_state_with_another_bar_is_refuted, scratch::InFolder) {
     proved_run(test::lying_dimer(12, 12), {towards(-1)}, {.max_strain = 1e9}, folder);
     for (const char* const file : {"states/eq_000000.json", "states/eq_000001.json"}) {
         BOOST_TEST((forger::altered(folder, file, "1.625", "1.62500001").verdict == Verdict::refuted), file);
@@ -246,8 +244,7 @@ BOOST_AUTO_TEST_CASE(the_way_of_every_arc_of_spheres_is_proved_from_its_witness)
 }
 
 /// The run itself says nothing of the power of true stresses; the checker proves that it is positive.
-BOOST_AUTO_TEST_CASE(the_way_of_spheres_is_proved_under_true_stresses) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(the_way_of_spheres_is_proved_under_true_stresses, scratch::InFolder) {
     play_spheres({"slab_uniform_30_1", 3}, folder.path() / "run", CertifyLevel::arcs, [](State& start) {
         start.load.kind = LoadKind::true_stress;
         start.load.stress = {1, 1, 1};
@@ -286,14 +283,13 @@ BOOST_AUTO_TEST_CASE(a_forged_witness_of_spheres_proves_no_way) {
 BOOST_AUTO_TEST_CASE(no_contact_of_spheres_is_left_out_at_a_turn) {
     State state = test::state_of_spheres(test::read_spheres("closed_rattler"));
     snap_to_grid(state.packing);
-    const auto wall = std::find_if(state.contacts.begin(), state.contacts.end(), [](const Contact& c) {
-        return c.kind == ContactKind::lower_wall && c.i == 1 && c.j == 2;
-    });
+    const auto wall = std::ranges::find_if(
+        state.contacts, [](const Contact& c) { return c.kind == ContactKind::lower_wall && c.i == 1 && c.j == 2; });
     BOOST_REQUIRE(wall != state.contacts.end());
     *wall = {ContactKind::held, 5, 0};
     checker::Place place;
     const auto row = static_cast<int>(wall - state.contacts.begin());
     (void)checker::make_place(state, place, {}, row);
-    BOOST_TEST(std::count(place.silent.begin(), place.silent.end(), true) == 0);
+    BOOST_TEST(std::ranges::count(place.silent, true) == 0);
     BOOST_TEST(place.silent.size() == state.contacts.size());
 }

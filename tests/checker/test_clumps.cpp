@@ -22,8 +22,8 @@ Certificate of_clumps(const State& state) {
 Certificate with_a_minimum(Certificate certificate, double away, double curvature) {
     MinimumClaim claim{away, curvature};
     const std::vector<Contact>& list = certificate.state.contacts;
-    std::copy_if(list.begin(), list.end(), std::back_inserter(claim.held),
-                 [](const Contact& contact) { return contact.kind == ContactKind::held; });
+    std::ranges::copy_if(list, std::back_inserter(claim.held),
+                         [](const Contact& contact) { return contact.kind == ContactKind::held; });
     for (std::size_t i = 0; i < claim.held.size(); ++i) {
         claim.form.push_back({1.01 * curvature, 1e9});
         claim.form.insert(claim.form.end(), claim.held.size() - i - 1, Interval{0, 0});
@@ -42,8 +42,8 @@ BOOST_AUTO_TEST_CASE(members_that_lie_level_bear_one_force_where_nothing_else_pr
     const auto equal = [](const State& state) {
         const isostat::checker::Evidence evidence(state, CheckerArithmetic::automatic);
         const auto at = [&state](int member) {
-            return static_cast<std::size_t>(
-                std::find(state.contacts.begin(), state.contacts.end(), pair_of(member, 2)) - state.contacts.begin());
+            return static_cast<std::size_t>(std::ranges::find(state.contacts, pair_of(member, 2)) -
+                                            state.contacts.begin());
         };
         return isostat::checker::equal_by_place(evidence, evidence.finite_load, {}, at(0), at(1));
     };

@@ -146,7 +146,7 @@ std::set<std::string> listed(std::size_t column) {
 
 /// The entry for a field: its name, or the beginning of it with a star.
 std::string entry_for(const std::set<std::string>& list, const std::string& field) {
-    const auto found = std::find_if(list.begin(), list.end(), [&](const std::string& entry) {
+    const auto found = std::ranges::find_if(list, [&](const std::string& entry) {
         return field == entry || (entry.ends_with('*') && field.starts_with(entry.substr(0, entry.size() - 1)));
     });
     return found == list.end() ? "" : *found;
@@ -187,10 +187,9 @@ std::string said_of(const fs::path& original, const std::function<void(const fs:
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(some_altered_fields_of_signed_runs_are_refused_or_undecided_or_listed_on_the_page,
-                     *boost::unit_test::label("slow")) {
+BOOST_FIXTURE_TEST_CASE(some_altered_fields_of_signed_runs_are_refused_or_undecided_or_listed_on_the_page,
+                        scratch::InFolder, *boost::unit_test::label("slow")) {
     altered_run::Counts counts;
-    const scratch::Folder folder;
     for (const Sample& sample : samples()) {
         BOOST_TEST_INFO_SCOPE(sample.name);
         sample.play(folder / sample.name);
@@ -223,8 +222,7 @@ BOOST_AUTO_TEST_CASE(every_altered_field_of_signed_runs_is_refused_or_undecided_
 }
 
 // A contact has one spelling, a column one name, a word one list: nothing else is read, and nothing crashes on it.
-BOOST_AUTO_TEST_CASE(what_is_no_record_of_a_run_is_bad_input) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_is_no_record_of_a_run_is_bad_input, scratch::InFolder) {
     play(equal_forces(), {towards(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);
     const fs::path run = folder / "run";
     const auto refuses = [&](const char* file, const std::string& from, const std::string& to) {
@@ -268,8 +266,7 @@ BOOST_AUTO_TEST_CASE(what_is_no_record_of_a_run_is_bad_input) {
     BOOST_CHECK_THROW((void)verify_run(run), Error);
 }
 
-BOOST_AUTO_TEST_CASE(the_summary_of_a_completed_run_has_the_counters_of_the_checkpoint) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(the_summary_of_a_completed_run_has_the_counters_of_the_checkpoint, scratch::InFolder) {
     play(equal_forces(), {towards(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);
     const std::string summary = scratch::read(folder / "run/summary.json");
     for (const char* name : {"combinatorial", "double", "undecided", "equilibria", "arcs"}) {
@@ -285,8 +282,7 @@ BOOST_AUTO_TEST_CASE(the_summary_of_a_completed_run_has_the_counters_of_the_chec
     }
 }
 
-BOOST_AUTO_TEST_CASE(files_that_no_record_names_are_noted_and_left_alone) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(files_that_no_record_names_are_noted_and_left_alone, scratch::InFolder) {
     play(equal_forces(), {towards(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);
     BOOST_TEST(verify_run(folder / "run").notes.size() == 0U);
     scratch::write(folder / "run/states/notes.json", "{}");
@@ -299,8 +295,8 @@ BOOST_AUTO_TEST_CASE(files_that_no_record_names_are_noted_and_left_alone) {
 }
 
 // A bound that is too small is wrong; beside one so large that nothing follows from it the number itself must be right.
-BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked, *boost::unit_test::label("slow")) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked, scratch::InFolder,
+                        *boost::unit_test::label("slow")) {
     play(prepared(8, 3), {towards(2)}, folder / "eight");
     const auto fields = scratch::row_of(folder / "eight/equilibria.csv", 1);
     const std::vector<std::pair<std::string, std::string>> pairs{{"eps1", "eps1_bound"},
@@ -338,8 +334,7 @@ BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked, *boost::unit_
 
 // The fifth disk is moved into the way of disk 0, in every file: the ends of the arc, the forces and the certificates
 // are those of the run in which it is not there, and overlap is nowhere but on the way.
-BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved, scratch::InFolder) {
     const State near = swing(12.990813884605371, 11.394639418507785);
     play(swing(12.991722005007981, 11.395062882006048), {towards(-1)}, folder / "far");
     play(near, {towards(-1)}, folder / "near");
@@ -358,10 +353,9 @@ BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
     for (const std::size_t row : {0, 1}) {
         const State state = read_state(run / ("states/eq_00000" + std::to_string(row) + ".json")).state;
         const auto fields = scratch::row_of(run / "equilibria.csv", row);
-        const auto nearest = checker::contact_of_columns(std::stoi(fields.at("min_gap_i")),
-                                                         std::stoi(fields.at("min_gap_j")), state.packing);
-        BOOST_REQUIRE(nearest.has_value());
-        set_field(run, row, "min_gap", Json(gap(state.packing, *nearest)).dump());
+        const auto nearest = required(checker::contact_of_columns(std::stoi(fields.at("min_gap_i")),
+                                                                  std::stoi(fields.at("min_gap_j")), state.packing));
+        set_field(run, row, "min_gap", Json(gap(state.packing, nearest)).dump());
         set_field(run, row, "min_gap_bound", "1e-12");
     }
     forger::seal(run);

@@ -41,9 +41,8 @@ BOOST_AUTO_TEST_CASE(the_checker_includes_nothing_of_what_it_checks) {
                 }
                 ++headers;
                 const std::string header = line.substr(9);
-                const bool known = std::any_of(allowed.begin(), allowed.end(), [&header](const std::string& start) {
-                    return header.starts_with(start);
-                });
+                const bool known = std::ranges::any_of(
+                    allowed, [&header](const std::string& start) { return header.starts_with(start); });
                 BOOST_TEST((known || of_the_standard(header)), entry.path().filename().string() << ": " << line);
             }
         }

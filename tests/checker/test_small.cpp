@@ -3,6 +3,7 @@
 #include "checker/maker.hpp"
 #include "checker/small_states.hpp"
 #include "support/cells.hpp"
+#include "support/units.hpp"
 
 using namespace claims;
 
@@ -203,12 +204,7 @@ BOOST_AUTO_TEST_CASE(a_family_that_approaches_a_singular_matrix) {
 BOOST_AUTO_TEST_CASE(scales_from_tiny_to_huge) {
     for (const int exponent : {-900, -400, -60, 60, 400, 900}) {
         State state = small_states::with_a_rattler();
-        for (double& x : state.packing.q) {
-            x = std::ldexp(x, exponent);
-        }
-        for (double& r : state.packing.radius) {
-            r = std::ldexp(r, exponent);
-        }
+        units::stretch(state.packing, std::ldexp(1.0, exponent));
         Certificate certificate = maker::certificate(small_states::with_a_rattler());
         certificate.state = state;
         certificate.claims.vertex->radius = std::ldexp(certificate.claims.vertex->radius, exponent);

@@ -158,7 +158,7 @@ BOOST_AUTO_TEST_CASE(the_derivative_of_spheres_changes_by_its_curvature) {
             Integer sum = 0;
             for (const int l : problem.contacts_of[j]) {
                 const room::Row& row = problem.rows[static_cast<std::size_t>(l)];
-                const auto* const at = std::find(row.coordinate.begin(), row.coordinate.end(), own);
+                const auto* const at = std::ranges::find(row.coordinate, own);
                 sum += change(static_cast<std::size_t>(l), static_cast<std::size_t>(at - row.coordinate.begin()), q);
             }
             farthest = std::max(farthest, sum);
@@ -178,7 +178,7 @@ BOOST_AUTO_TEST_CASE(a_gap_of_spheres_is_enclosed_to_the_worst_case_of_three_axe
         const Rational radius = room::power_of_two(-20);
         const std::vector<room::Gap> gaps = smallest_gaps(problem, state, blurred(problem, radius));
         const Contact pair = pair_of(0, 1, image ? Image{{1, 1, 1}} : Image{});
-        const auto gap = std::find_if(gaps.begin(), gaps.end(), [&pair](const room::Gap& g) { return g.pair == pair; });
+        const auto gap = std::ranges::find_if(gaps, [&pair](const room::Gap& g) { return g.pair == pair; });
         BOOST_TEST_REQUIRE((gap != gaps.end()));
         const room::Row row(pair, problem.layout);
         BOOST_TEST(row.count == (image ? 12 : 6));

@@ -58,8 +58,8 @@ void finds_term(const fs::path& folder, const std::string& list, const std::stri
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_altered_ones_are_found) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_altered_ones_are_found,
+                        scratch::InFolder) {
     play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, towards(-1), Ties::stop, 1, folder);
     is_proved(folder);
     BOOST_TEST(verify_run(folder).turns_checked == 1);
@@ -78,15 +78,13 @@ BOOST_AUTO_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_alt
     finds(folder, "events.jsonl", "\"force\":" + force, "\"force\":" + times(force, 1 + 1e-5), "force");
 }
 
-BOOST_AUTO_TEST_CASE(a_turning_arc_is_replayed) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_turning_arc_is_replayed, scratch::InFolder) {
     play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(1), Ties::stop, 1, folder);
     is_proved(folder);
     BOOST_TEST(verify_run(folder).arcs > 0);
 }
 
-BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_terms_are_found) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_terms_are_found, scratch::InFolder) {
     play(crafted::mirror_forces(), towards(-1), Ties::first_order, 1, folder);
     is_proved(folder);
     BOOST_TEST(verify_run(folder).ties_checked == 2);
@@ -104,8 +102,7 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_ter
     finds_term(folder, "zero", "],", 1.001, "first-order force");
 }
 
-BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_is_replayed_and_an_altered_choice_is_found) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_tie_of_two_gaps_is_replayed_and_an_altered_choice_is_found, scratch::InFolder) {
     play(crafted::mirror_gaps(), towards(1), Ties::first_order, 1, folder);
     is_proved(folder);
     const std::string events = scratch::read(folder / "events.jsonl");

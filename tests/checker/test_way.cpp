@@ -169,8 +169,8 @@ BOOST_AUTO_TEST_CASE(the_power_of_true_stresses_on_spheres_is_positive_from_wher
     Moving moving;
     moving.state = isostat::test::state_of_spheres(isostat::test::read_spheres("closed_two"));
     const Contact floor{ContactKind::lower_wall, 1, 2};
-    std::copy_if(moving.state.contacts.begin(), moving.state.contacts.end(), std::back_inserter(moving.kept),
-                 [&](const Contact& c) { return c != floor; });
+    std::ranges::copy_if(moving.state.contacts, std::back_inserter(moving.kept),
+                         [&](const Contact& c) { return c != floor; });
     moving.coordinates = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     moving.moves.assign(9, true);
     moving.loose.assign(9, false);
@@ -200,10 +200,9 @@ BOOST_AUTO_TEST_CASE(a_way_against_the_load_is_not_proved) {
         const std::array<double, 2> along{-std::sin(middle), std::cos(middle)};
         const Objections with = Rolled(0.3, 0.9, along).prove();
         BOOST_TEST(!with.has_value(), (with ? with->text : ""));
-        const Objections against = Rolled(0.3, 0.9, {-along[0], -along[1]}).prove();
-        BOOST_REQUIRE(against.has_value());
-        BOOST_TEST(!against->wrong);
-        BOOST_TEST(against->text.find("the power of the load is not proved positive") != std::string::npos);
+        const auto against = required(Rolled(0.3, 0.9, {-along[0], -along[1]}).prove());
+        BOOST_TEST(!against.wrong);
+        BOOST_TEST(against.text.find("the power of the load is not proved positive") != std::string::npos);
     }
     // The load pushes along at both ends of most of the way, not all of it: at 0.9 it stands against it.
     const std::array<double, 2> turns{-std::sin(-0.7), std::cos(-0.7)};
@@ -216,9 +215,8 @@ BOOST_AUTO_TEST_CASE(grains_at_rest_must_be_at_one_place_at_both_ends) {
     const std::array<double, 2> along{-std::sin(0.6), std::cos(0.6)};
     const Objections same = Rolled(0.3, 0.9, along, 0, 1e-4).prove();
     BOOST_TEST(!same.has_value(), (same ? same->text : ""));
-    const Objections off = Rolled(0.3, 0.9, along, 1e-4, 1e-4).prove();
-    BOOST_REQUIRE(off.has_value());
-    BOOST_TEST(off->text.find("grains at rest are not proved to be at the same place") != std::string::npos, off->text);
+    const auto off = required(Rolled(0.3, 0.9, along, 1e-4, 1e-4).prove());
+    BOOST_TEST(off.text.find("grains at rest are not proved to be at the same place") != std::string::npos, off.text);
 }
 
 BOOST_AUTO_TEST_CASE(an_arc_that_ends_higher_than_it_began_is_refuted) {
@@ -228,10 +226,9 @@ BOOST_AUTO_TEST_CASE(an_arc_that_ends_higher_than_it_began_is_refuted) {
     for (const bool rattles : {false, true}) { // the infinitesimal loads, which are the same, decide then
         const Objections down = Rolled(100 * degree, 200 * degree, gravity).check(rattles);
         BOOST_TEST(!down.has_value(), (down ? down->text : ""));
-        const Objections up = Rolled(100 * degree, 455 * degree, gravity).check(rattles);
-        BOOST_REQUIRE(up.has_value());
-        BOOST_TEST(up->wrong);
-        BOOST_TEST(up->text.find("the potential does not decrease") != std::string::npos, up->text);
+        const auto up = required(Rolled(100 * degree, 455 * degree, gravity).check(rattles));
+        BOOST_TEST(up.wrong);
+        BOOST_TEST(up.text.find("the potential does not decrease") != std::string::npos, up.text);
     }
 }
 

@@ -38,7 +38,7 @@ class Background {
         const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(10);
         while (std::chrono::steady_clock::now() < deadline) {
             const std::string text = scratch::read(file);
-            if (std::count(text.begin(), text.end(), '\n') >= lines) {
+            if (std::ranges::count(text, '\n') >= lines) {
                 return ::kill(pid_, signal) == 0;
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(1));

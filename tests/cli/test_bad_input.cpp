@@ -78,13 +78,11 @@ void refuses(Arguments call, const std::string& word) {
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(overlapping_disks) {
+BOOST_FIXTURE_TEST_CASE(overlapping_disks, scratch::InFolder) {
     isostat::State state = crafted::two_disks(1, 2, 1, 1);
     state.packing.q[2] -= 0.5;
     run_refuses(state_text(state), {"overlap", "0-1", "-0.4659", "expected every gap >= 0"});
-    const scratch::Folder folder;
-    scratch::write(folder / "s.json", state_text(state));
-    expect(run({"inspect", folder.at("s.json")}),
+    expect(run({"inspect", folder.file("s.json", state_text(state))}),
            2); // no true configuration has these contacts near: nothing is proved
 }
 
@@ -104,10 +102,9 @@ BOOST_AUTO_TEST_CASE(unknown_keys) {
     run_refuses(replaced(two, "\"length\"", "\"lenght\""), {"unknown field 'lenght'", "length"});
 }
 
-BOOST_AUTO_TEST_CASE(empty_files) {
+BOOST_FIXTURE_TEST_CASE(empty_files, scratch::InFolder) {
     run_refuses("", {"empty"});
     scene_refused("", {"empty"});
-    const scratch::Folder folder;
     scratch::write(folder / "e.json", "");
     expect(run({"inspect", folder.at("e.json")}), 65, {"e.json", "empty"});
     expect(run({"import", folder.at("e.json"), "-o", folder.at("o.json")}), 65, {"e.json", "empty"});
@@ -131,8 +128,7 @@ BOOST_AUTO_TEST_CASE(disks_larger_than_the_box) {
     run_refuses(replaced(two, "[1.0,1.0,1.0]", "[1.0,1.0,50.0]"), {"disk 0", "100", "larger than the box"});
 }
 
-BOOST_AUTO_TEST_CASE(folders_that_cannot_be_written) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(folders_that_cannot_be_written, scratch::InFolder) {
     scratch::write(folder / "plain", "a file");
     scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up(6)));
     scratch::write(folder / "p.toml", "[packing]\ndisks = 2000\n"); // would take a while: it must be refused before
@@ -148,14 +144,13 @@ BOOST_AUTO_TEST_CASE(folders_that_cannot_be_written) {
     BOOST_TEST(!fs::exists(folder / "no"));
 }
 
-BOOST_AUTO_TEST_CASE(contradictory_programmes) {
+BOOST_FIXTURE_TEST_CASE(contradictory_programmes, scratch::InFolder) {
     const std::string packing = "[packing]\ndisks = 4\n";
     scene_refused(packing + "[[programme]]\ndo = \"up\"\n", {":3:", "no end"});
     scene_refused(packing + "[[programme]]\ndo = \"up\"\nto = 0.5\n",
                   {":3:", "0.5", "ratio at its start is 1", "larger"});
     scene_refused(packing + up(6) + "[[programme]]\ndo = \"down\"\nfrom = 7\nto = 1.0\n",
                   {":6:", "equilibrium 7", "number 6"});
-    const scratch::Folder folder;
     scratch::write(folder / "s.toml", packing);
     expect(run({"run", folder.at("s.toml"), "-o", folder.at("out")}), 65, {"s.toml", "no [[programme]]"});
     // Only the start file tells that 1.5 is behind.
@@ -167,8 +162,7 @@ BOOST_AUTO_TEST_CASE(contradictory_programmes) {
     BOOST_TEST(!fs::exists(folder / "out"));
 }
 
-BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_folder_that_holds_a_run, scratch::InFolder) {
     const std::string out = folder.at("run");
     scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up(6)));
     expect(run({"run", folder.at("s.toml"), "-o", out, "--resume", "-q"}), 65, {"run.json", "no run to resume"});
@@ -180,9 +174,8 @@ BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run) {
     expect(run({"run", folder.at("t.toml"), "-o", out, "-q", "--resume"}), 65, {"run.json", "another scene", "t.toml"});
 }
 
-BOOST_AUTO_TEST_CASE(a_cell_that_is_refused_after_reading_is_refused_with_its_file) {
+BOOST_FIXTURE_TEST_CASE(a_cell_that_is_refused_after_reading_is_refused_with_its_file, scratch::InFolder) {
     // Pairs up to just 29 periods apart may touch: the search reaches a little farther, and refuses what was read.
-    const scratch::Folder folder;
     const std::string file = folder.at("leaning.toml");
     scratch::write(file, "format = \"isostat-packing 1\"\ndisks = [[0, 0, 1]]\n[cell]\nperiod = [2, 2]\n"
                          "moves = [\"x\"]\ntilt = \"8077051742094299/140737488355328\"\n");
@@ -192,8 +185,7 @@ BOOST_AUTO_TEST_CASE(a_cell_that_is_refused_after_reading_is_refused_with_its_fi
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_manifest_without_a_table_is_told_which_table_and_which_key) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_manifest_without_a_table_is_told_which_table_and_which_key, scratch::InFolder) {
     const std::string head = "format = \"isostat-series 1\"\n", files = "[files]\ndisks = \"a\"\nframes = \"b\"\n";
     for (const auto& [text, words] : {std::pair(head, ":1: no disks in [files]: expected the name of a LAMMPS dump"),
                                       std::pair(head + files, ":1: no reference_length in [load]: expected [L1, L2]"),

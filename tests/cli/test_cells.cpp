@@ -48,10 +48,9 @@ BOOST_AUTO_TEST_CASE(inspect_counts_and_proves_a_rectangle) {
     BOOST_TEST(std::abs(json.at("interval_high")[0].get<double>() - 1.3794962837050024) < 1e-9);
 }
 
-BOOST_AUTO_TEST_CASE(a_step_that_is_no_number_is_none_and_its_message_has_a_reason) {
+BOOST_FIXTURE_TEST_CASE(a_step_that_is_no_number_is_none_and_its_message_has_a_reason, scratch::InFolder) {
     // Rows of equal disks, unloaded along y: a pass of the path follower divides by 0. Disk 0 was "nan periods from the
     // origin".
-    const scratch::Folder folder;
     const std::string scene = folder.at("rows.toml");
     scratch::write_scene(
         scene, "[packing]\nfile = \"" + scratch::data("cells/rows_unloaded.json") +
@@ -62,8 +61,7 @@ BOOST_AUTO_TEST_CASE(a_step_that_is_no_number_is_none_and_its_message_has_a_reas
     BOOST_TEST(contains(run_down.err, "at sigma = 0"), run_down.err);
 }
 
-BOOST_AUTO_TEST_CASE(plateau_of_a_periodic_dump) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(plateau_of_a_periodic_dump, scratch::InFolder) {
     const std::string file = folder.file("disks.dump", dump());
     says(run({"plateau", file, "--cell", "diagonal"}), 0, {"periodic along x and y", "from N = 30 with 1 rattlers"});
     const auto json = json_of(run({"plateau", file, "--cell", "diagonal", "--json"}));
@@ -73,8 +71,7 @@ BOOST_AUTO_TEST_CASE(plateau_of_a_periodic_dump) {
     BOOST_TEST(open.status == 64);
 }
 
-BOOST_AUTO_TEST_CASE(certificates_of_a_cell_verify_and_forged_ones_do_not) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(certificates_of_a_cell_verify_and_forged_ones_do_not, scratch::InFolder) {
     const std::string made = folder.at("made.json");
     expect(run({"certify", rectangle, "-o", made}), 0);
     expect(run({"verify", made, "--input", rectangle}), 0);
@@ -89,8 +86,7 @@ BOOST_AUTO_TEST_CASE(certificates_of_a_cell_verify_and_forged_ones_do_not) {
     BOOST_TEST(run({"verify", made}).status != 0);
 }
 
-BOOST_AUTO_TEST_CASE(a_run_of_a_cell_is_written_resumed_and_replayed) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_run_of_a_cell_is_written_resumed_and_replayed, scratch::InFolder) {
     const std::string out = ran(folder, "[packing]\nfile = \"" + scratch::data("cells/tilt_16.json") +
                                             "\"\n[[programme]]\ndo = \"up\"\nequilibria = 2\n");
     says(run({"verify", out}), 0, {"ends proved, way looked at"});
@@ -99,8 +95,8 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_cell_is_written_resumed_and_replayed) {
     BOOST_TEST(std::abs(state.packing.lattice(0, 1) - -0.9095404261907584) < 1e-9);
 }
 
-BOOST_AUTO_TEST_CASE(states_and_arcs_of_a_run_in_a_cell_are_certified, *boost::unit_test::label("slow")) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(states_and_arcs_of_a_run_in_a_cell_are_certified, scratch::InFolder,
+                        *boost::unit_test::label("slow")) {
     const std::string scene = folder.at("cell.toml");
     const auto verified = [&](const std::string& level) {
         scratch::write_scene(scene,
@@ -120,8 +116,7 @@ BOOST_AUTO_TEST_CASE(states_and_arcs_of_a_run_in_a_cell_are_certified, *boost::u
     BOOST_TEST(run({"verify", folder.at("arcs")}).status != 0);
 }
 
-BOOST_AUTO_TEST_CASE(a_run_that_changes_the_shear_is_written_resumed_and_replayed) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_run_that_changes_the_shear_is_written_resumed_and_replayed, scratch::InFolder) {
     const std::string scene = folder.at("cell.toml");
     const auto play = [&](const std::string& load, const std::string& start) {
         scratch::write_scene(scene,
@@ -145,8 +140,8 @@ BOOST_AUTO_TEST_CASE(a_run_that_changes_the_shear_is_written_resumed_and_replaye
     expect(run({"verify", folder.at("last.cert.json")}), 0);
 }
 
-BOOST_AUTO_TEST_CASE(a_prepared_cell_begins_at_no_shear_strain_and_the_words_are_those_of_a_shear) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_prepared_cell_begins_at_no_shear_strain_and_the_words_are_those_of_a_shear,
+                        scratch::InFolder) {
     const std::string scene =
         folder.file("cell.toml", "[packing]\ndisks = 60\n[cell]\nkind = \"tilted\"\n[load]\nloaded = \"tilt\"\n"
                                  "[[programme]]\ndo = \"up\"\nequilibria = 4\n[[programme]]\ndo = \"to\"\nto = 0\n");
@@ -179,8 +174,7 @@ BOOST_AUTO_TEST_CASE(a_prepared_cell_begins_at_no_shear_strain_and_the_words_are
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_rectangle_is_prepared_and_followed_under_true_stresses) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_rectangle_is_prepared_and_followed_under_true_stresses, scratch::InFolder) {
     const std::string scene = folder.at("cell.toml");
     std::map<std::string, std::map<std::string, std::string>> last;
     for (const std::string kind : {"true", "nominal"}) {
@@ -199,8 +193,7 @@ BOOST_AUTO_TEST_CASE(a_rectangle_is_prepared_and_followed_under_true_stresses) {
     BOOST_TEST(of("true", "sigma2_high") != of("nominal", "sigma2_high"));
 }
 
-BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_as_flows) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_dead_shear_that_flows_ends_as_flows, scratch::InFolder) {
     isostat::State state = cells::one_tilted_disk(1, 1, 0.5);
     state.load.reference_length = {2, std::sqrt(3.0)};
     isostat::write_state(folder / "disk.json", state);
@@ -211,8 +204,7 @@ BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_as_flows) {
     BOOST_TEST(contains(scratch::read(folder / "out" / "run.json"), "flows: a shear of 1.1547"));
 }
 
-BOOST_AUTO_TEST_CASE(periodic_packings_of_other_programs_become_states) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(periodic_packings_of_other_programs_become_states, scratch::InFolder) {
     const std::string file = folder.at("disks.dump"), made = folder.at("made.json");
     for (const char* name : {"rect_16", "tilt_16"}) {
         for (const double part : {1e-12, 1e-6, 1e-4}) {
@@ -238,8 +230,7 @@ BOOST_AUTO_TEST_CASE(periodic_packings_of_other_programs_become_states) {
     BOOST_TEST(!isostat::read_any_state(moved).state.packing.cell.tilt_moves[0]);
 }
 
-BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_is_prepared_read_and_not_followed) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_cell_that_keeps_its_shape_is_prepared_read_and_not_followed, scratch::InFolder) {
     const auto in = [&](const char* name) { return (folder / name).string(); };
     scratch::write(in("s.toml"), "[packing]\ndisks = 40\ndiameters = [1.0, 2.0]\n[cell]\nkind = \"isotropic\"\n");
     expect(run({"prepare", in("s.toml"), "-o", in("made.json"), "-q"}), 0);
@@ -262,8 +253,7 @@ BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_is_prepared_read_and_not_follow
     expect(run({"run", in("run.toml"), "-o", in("out")}), 65, {"keeps its shape", "no contact ever opens"});
 }
 
-BOOST_AUTO_TEST_CASE(lists_and_channels_of_other_programs_become_states) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(lists_and_channels_of_other_programs_become_states, scratch::InFolder) {
     const auto in = [&](const char* name) { return (folder / name).string(); };
     for (const char* name : {"rect_16", "tilt_16"}) {
         const isostat::State state =
@@ -293,8 +283,7 @@ BOOST_AUTO_TEST_CASE(lists_and_channels_of_other_programs_become_states) {
     expect(run({"import", in("channel.dump"), "-o", in("made.json"), "--box", "-1:3,1:2"}), 65, {"between the walls"});
 }
 
-BOOST_AUTO_TEST_CASE(what_is_exported_of_a_cell_is_imported_again) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_is_exported_of_a_cell_is_imported_again, scratch::InFolder) {
     const std::string made = folder.at("made.json");
     const isostat::Packing stored = isostat::read_any_state(rectangle).state.packing;
     for (const std::string end : {"data", "xyz"}) {
@@ -312,8 +301,7 @@ BOOST_AUTO_TEST_CASE(what_is_exported_of_a_cell_is_imported_again) {
     BOOST_TEST(contains(scratch::read(folder / "forces_rect_16.vtk"), "LINES 33 "));
 }
 
-BOOST_AUTO_TEST_CASE(statements_that_do_not_fit_a_cell_are_refused) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(statements_that_do_not_fit_a_cell_are_refused, scratch::InFolder) {
     const std::string out = folder.at("out.json");
     const std::string file = folder.file("disks.dump", dump());
     expect(run({"import", file, "-o", out, "--box", "0:9,0:9"}), 65, {"walls or a box were stated of a periodic"});
@@ -328,8 +316,7 @@ BOOST_AUTO_TEST_CASE(statements_that_do_not_fit_a_cell_are_refused) {
     expect(run({"import", file, "-o", out}), 65, {"overlap"});
 }
 
-BOOST_AUTO_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_forces) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_forces, scratch::InFolder) {
     expect(run({"snap", scratch::data("cells/channel_16.json"), "-o", folder.at("t.json")}), 0);
     const std::string file = folder.at("disks.dump"), made = folder.at("made.json");
     for (const char* name : {"rect_16", "tilt_16"}) {
@@ -351,7 +338,7 @@ BOOST_AUTO_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_forces) 
             return json_of(run({"snap", folder.at("state.json"), "-o", made, "--json"})).at("forces");
         };
         BOOST_TEST(forces_of().at("rest").get<double>() < 1e-9);
-        const auto strongest = std::max_element(state.forces.begin(), state.forces.end());
+        const auto strongest = std::ranges::max_element(state.forces);
         *strongest *= 1.25;
         const auto wrong = forces_of();
         BOOST_TEST(wrong.at("rest").get<double>() * wrong.at("mean").get<double>() == 0.2 * *strongest,
@@ -362,9 +349,8 @@ BOOST_AUTO_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_forces) 
     }
 }
 
-BOOST_AUTO_TEST_CASE(crafted_packings_in_cells_become_states_or_the_reason_is_said) {
+BOOST_FIXTURE_TEST_CASE(crafted_packings_in_cells_become_states_or_the_reason_is_said, scratch::InFolder) {
     const std::string packings = ISOSTAT_EXAMPLES "/packings/";
-    const scratch::Folder folder;
     const std::string state = folder.at("state.json");
     for (const char* name : {"channel_two_disks_low", "channel_two_disks_high", "cell_one_disk_tilted"}) {
         says(run({"import", packings + name + ".toml", "-o", state}), 0, {"those of the crafted packing, exactly"});

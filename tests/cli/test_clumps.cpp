@@ -4,8 +4,7 @@
 
 using namespace program;
 
-BOOST_AUTO_TEST_CASE(clumps_are_inspected_certified_verified_and_drawn) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(clumps_are_inspected_certified_verified_and_drawn, scratch::InFolder) {
     const std::string state = ISOSTAT_TEST_DATA "/clumps/dimer2_20_2.json";
     const std::string certificate = folder.at("certificate.json");
     says(run({"inspect", state}), 0,
@@ -23,8 +22,7 @@ BOOST_AUTO_TEST_CASE(clumps_are_inspected_certified_verified_and_drawn) {
     BOOST_TEST(!contains(picture, "class=\"traction\"")); // bars under tension are no contacts
 }
 
-BOOST_AUTO_TEST_CASE(eigenvalues_of_the_second_variation_are_said_where_a_minimum_is_proved) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(eigenvalues_of_the_second_variation_are_said_where_a_minimum_is_proved, scratch::InFolder) {
     isostat::write_state(folder.at("oval.json"), isostat::test::oval_in_a_box(1, 1));
     isostat::write_state(folder.at("falls.json"), isostat::test::oval_in_a_box(3, 1));
     says(run({"inspect", folder.at("oval.json")}), 1, {"W'' in (X, Y, angle)     2 +- "});
@@ -34,8 +32,7 @@ BOOST_AUTO_TEST_CASE(eigenvalues_of_the_second_variation_are_said_where_a_minimu
     BOOST_TEST(!contains(run({"inspect", folder.at("falls.json")}).out, "W'' in"));
 }
 
-BOOST_AUTO_TEST_CASE(a_run_of_clumps_goes_on_where_it_was_stopped_and_is_verified_and_reported) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_run_of_clumps_goes_on_where_it_was_stopped_and_is_verified_and_reported, scratch::InFolder) {
     isostat::State state = isostat::test::lying_dimer(12, 12);
     state.load.refer_to(state.packing);
     state.load.stress = {12 / 2.0, 12 / 2.875};
@@ -52,8 +49,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_clumps_goes_on_where_it_was_stopped_and_is_verifie
     says(run({"verify", folder.at("out")}), 0, {"ends proved", "3 of 3 proved"});
 }
 
-BOOST_AUTO_TEST_CASE(clumps_of_another_program_are_imported_with_the_counts_that_they_had) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(clumps_of_another_program_are_imported_with_the_counts_that_they_had, scratch::InFolder) {
     const std::string table = folder.at("grains.csv"), state = folder.at("imported.json");
     for (const auto& [name, digits, k] :
          {std::tuple{"dimer2_20_2", 17, 6}, std::tuple{"dimer2_20_2", 8, 6}, std::tuple{"trimer_20_1", 8, 0}}) {
@@ -82,9 +78,8 @@ BOOST_AUTO_TEST_CASE(clumps_of_another_program_are_imported_with_the_counts_that
     }
 }
 
-BOOST_AUTO_TEST_CASE(plateaus_and_genericity_of_clumps_say_what_turns) {
+BOOST_FIXTURE_TEST_CASE(plateaus_and_genericity_of_clumps_say_what_turns, scratch::InFolder) {
     const std::string state = ISOSTAT_TEST_DATA "/clumps/dimer2_20_2.json";
-    const scratch::Folder folder;
     const std::string csv = folder.at("table.csv");
     says(run({"plateau", state, "--csv", csv}), 0,
          {"40 in 20 bodies", "from N = 56 with 1 rattlers; h = 0, k = 3 (3 turns)", "turn about the one member"});
@@ -105,8 +100,7 @@ BOOST_AUTO_TEST_CASE(plateaus_and_genericity_of_clumps_say_what_turns) {
     expect(run({"genericity", oval}), 65, {"arcs"});
 }
 
-BOOST_AUTO_TEST_CASE(what_takes_single_grains_names_clumps) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_takes_single_grains_names_clumps, scratch::InFolder) {
     const std::string state = ISOSTAT_TEST_DATA "/clumps/dimer_20_3.json";
     for (const Arguments& command : std::vector<Arguments>{{"snap", state, "-o", folder.at("snapped.json")},
                                                            {"import", state, "-o", folder.at("imported.json")},

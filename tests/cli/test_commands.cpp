@@ -39,8 +39,7 @@ BOOST_AUTO_TEST_CASE(wrong_use_is_64) {
     expect(run({"plan", "scene.toml", "--fast"}), 64, {"--fast"});
 }
 
-BOOST_AUTO_TEST_CASE(inspect_tells_the_closed_form_of_two_disks) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(inspect_tells_the_closed_form_of_two_disks, scratch::InFolder) {
     scratch::write(folder / "two.json", state_text(crafted::two_disks(1, 2, 1, 1)));
     const auto j = json_of(run({"inspect", folder.at("two.json"), "--json"}));
     has(j, {{"N_f", 6}, {"N", 6}, {"rank", 6}, {"h", 0}, {"k", 0}});
@@ -57,8 +56,7 @@ BOOST_AUTO_TEST_CASE(inspect_tells_the_closed_form_of_two_disks) {
           "equilibrium    proved"});
 }
 
-BOOST_AUTO_TEST_CASE(inspect_refutes_what_is_no_isostatic_equilibrium) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(inspect_refutes_what_is_no_isostatic_equilibrium, scratch::InFolder) {
     const auto inspected = [&](const isostat::State& state) {
         return run({"inspect", folder.file("s.json", state_text(state)), "--json"});
     };
@@ -69,8 +67,7 @@ BOOST_AUTO_TEST_CASE(inspect_refutes_what_is_no_isostatic_equilibrium) {
     says(inspected(crafted::two_disks(1, 2, 1, 0.3)), 1, {"1-bottom"}); // pulls below the limit 0.3535
 }
 
-BOOST_AUTO_TEST_CASE(import_keeps_every_number_of_a_vertex_text_and_proves_it) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(import_keeps_every_number_of_a_vertex_text_and_proves_it, scratch::InFolder) {
     const std::string target = folder.at("state.json");
     expect(run({"import", scratch::data("vertex100.txt"), "-o", target}), 0);
     const isostat::State a = isostat::read_state(scratch::data("vertex100.txt")).state;
@@ -90,8 +87,7 @@ BOOST_AUTO_TEST_CASE(import_keeps_every_number_of_a_vertex_text_and_proves_it) {
     BOOST_TEST(!fs::exists(folder / "none.json"));
 }
 
-BOOST_AUTO_TEST_CASE(prepare_makes_a_state_with_its_history_and_the_same_bits_again) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(prepare_makes_a_state_with_its_history_and_the_same_bits_again, scratch::InFolder) {
     scratch::write(folder / "s.toml", "[packing]\ndisks = 25\nseed = 5\n");
     const std::string first = folder.at("1.json"), second = folder.at("2.json");
     expect(run({"prepare", folder.at("s.toml"), "-o", first}), 0);
@@ -111,13 +107,11 @@ BOOST_AUTO_TEST_CASE(prepare_makes_a_state_with_its_history_and_the_same_bits_ag
     expect(run({"inspect", first}), 0);
 }
 
-BOOST_AUTO_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan, scratch::InFolder) {
     for (const std::string name : {"biaxial-400.toml", "biaxial-1936.toml", "biaxial-4900.toml", "periodic-1936.toml",
                                    "shear-400.toml", "spheres-100.toml"}) {
         const auto plan = says(run({"plan", ISOSTAT_EXAMPLES "/" + name}), 0, {"max_arcs = 20000", "# default"});
-        scratch::write(folder / "again.toml", plan.out);
-        const Outcome again = done(run({"plan", folder.at("again.toml")}));
+        const Outcome again = done(run({"plan", folder.file("again.toml", plan.out)}));
         const auto settings = [](const std::string& text) { // without the remarks on lines
             std::string kept;
             for (const std::string& line : scratch::split(text.substr(text.find("\n[packing]")), '\n')) {
@@ -132,8 +126,7 @@ BOOST_AUTO_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan) {
     BOOST_TEST(j["programme"].size() == 5U);
 }
 
-BOOST_AUTO_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so, scratch::InFolder) {
     const std::string out = folder.at("run");
     scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up(6) + back_twice));
     says(run({"run", folder.at("s.toml"), "-o", out}), 0,
@@ -146,7 +139,7 @@ BOOST_AUTO_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so) {
         BOOST_TEST(row.backbone == 2 * (100 - row.rattlers) + 2);
     }
     BOOST_TEST(rows.back().ratio == 1.0);
-    const auto branch = std::find_if(rows.begin(), rows.end(), [](const auto& r) { return r.segment == 2; });
+    const auto branch = std::ranges::find_if(rows, [](const auto& r) { return r.segment == 2; });
     BOOST_REQUIRE((branch != rows.end()));
     BOOST_TEST(branch->previous == 3);
     for (const char* name : {"eq_000000", "eq_000003", "eq_000006", "last"}) {
@@ -167,8 +160,7 @@ BOOST_AUTO_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so) {
     BOOST_TEST(json::parse(scratch::read(out + "/summary.json"))["counters"]["arcs"] == step);
 }
 
-BOOST_AUTO_TEST_CASE(json_output_is_one_object_and_nothing_else) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(json_output_is_one_object_and_nothing_else, scratch::InFolder) {
     scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up(6)));
     const Outcome outcome = run({"run", folder.at("s.toml"), "-o", folder.at("run"), "--json"});
     has(json_of(outcome), {{"status", "completed"}, {"counters/equilibria", 6}, {"counters/decisions/undecided", 0}});
@@ -180,29 +172,26 @@ BOOST_AUTO_TEST_CASE(json_output_is_one_object_and_nothing_else) {
     BOOST_TEST(json_of(run({"report", folder.at("run"), "--json", "--no-charts"}))["files"].size() > 3U);
 }
 
-BOOST_AUTO_TEST_CASE(a_sample_that_fails_is_a_result_and_a_tie_is_undecided) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_sample_that_fails_is_a_result_and_a_tie_is_undecided, scratch::InFolder) {
     ran(folder, scene_from(scratch::data("vertex100.txt"), up(6), "[run]\nmax_arcs = 3\n"), 1, {"failed", "max_arcs"});
     BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "\"status\": \"failed: "));
     BOOST_TEST(fs::exists(folder / "run/summary.json"));
 
     scratch::write(folder / "three.json", state_text(crafted::three_disks(1, 1, 1, 1, 1)));
-    scratch::write(folder / "tie.toml", scene_from("three.json", up(1)));
-    const Outcome tie = run({"run", folder.at("tie.toml"), "-o", folder.at("tie"), "-q"});
+    const Outcome tie =
+        run({"run", folder.file("tie.toml", scene_from("three.json", up(1))), "-o", folder.at("tie"), "-q"});
     expect(tie, 2, {"undecided", "tie"});
     BOOST_TEST(isostat::read_equilibria(folder / "tie/equilibria.csv").size() == 1U);
     BOOST_TEST(contains(scratch::read(folder / "tie/summary.json"), "\"status\": \"undecided\""));
 }
 
-BOOST_AUTO_TEST_CASE(a_ratio_that_lies_behind_when_its_turn_comes_fails_the_run) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_ratio_that_lies_behind_when_its_turn_comes_fails_the_run, scratch::InFolder) {
     ran(folder, scene_from(scratch::data("vertex100.txt"), up(6) + "[[programme]]\ndo = \"up\"\nto = 1.01\n"), 1,
         {"s.toml:6", "larger ratio than 1.01"});
     BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "failed"));
 }
 
-BOOST_AUTO_TEST_CASE(figures_are_drawn_and_without_gnuplot_data_and_scripts_remain) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(figures_are_drawn_and_without_gnuplot_data_and_scripts_remain, scratch::InFolder) {
     const std::string out = ran(folder, scene_from(scratch::data("vertex100.txt"), up(6) + back_twice));
     BOOST_TEST(!fs::exists(out + "/figures"));
     const Outcome without = run({"report", out}, "PATH= ");
@@ -234,8 +223,7 @@ BOOST_AUTO_TEST_CASE(figures_are_drawn_and_without_gnuplot_data_and_scripts_rema
     BOOST_TEST(contains(scratch::read(out + "/figures/report.txt"), "equilibria proved"));
 }
 
-BOOST_AUTO_TEST_CASE(a_state_without_forces_gets_them_for_its_picture) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_state_without_forces_gets_them_for_its_picture, scratch::InFolder) {
     expect(run({"report", scratch::data("vertex100.txt"), "-o", folder.path().string(), "--vtk"}), 0);
     BOOST_TEST(contains(scratch::read(folder / "forces_vertex100.svg"), "class=\"force\""));
     BOOST_TEST(contains(scratch::read(folder / "forces_vertex100.svg"), "class=\"rattler\""));

@@ -31,8 +31,7 @@ fs::path small_scene(const scratch::Folder& folder) {
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(an_answer_that_does_not_get_out_is_74_for_every_command) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(an_answer_that_does_not_get_out_is_74_for_every_command, scratch::InFolder) {
     const std::string scene = small_scene(folder).string();
     const std::string cert = folder.at("c.json"), done_run = folder.at("done");
     expect(run({"certify", vertex, "-o", cert}), 0);
@@ -60,8 +59,7 @@ BOOST_AUTO_TEST_CASE(an_answer_that_does_not_get_out_is_74_for_every_command) {
     BOOST_TEST(status_with_output_to("/dev/null", {"inspect", vertex}) == 0);
 }
 
-BOOST_AUTO_TEST_CASE(names_of_files_may_be_any_bytes) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(names_of_files_may_be_any_bytes, scratch::InFolder) {
     const std::string bad = folder.at("bad\xff.json");
     fs::copy(vertex, bad);
     for (const Arguments& command : std::vector<Arguments>{
@@ -86,8 +84,7 @@ BOOST_AUTO_TEST_CASE(names_of_files_may_be_any_bytes) {
     expect(run({"inspect", folder.at("absent\xff")}), 65, {"absent\\xff:"});
 }
 
-BOOST_AUTO_TEST_CASE(nesting_without_end_is_bad_input_for_every_command) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(nesting_without_end_is_bad_input_for_every_command, scratch::InFolder) {
     const std::string deep =
         folder.file("deep.json", "{\"format\":" + std::string(100'000, '[') + std::string(100'000, ']') + "}");
     for (const Arguments& command : std::vector<Arguments>{
@@ -111,11 +108,11 @@ BOOST_AUTO_TEST_CASE(nesting_without_end_is_bad_input_for_every_command) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(sizes_beyond_the_arithmetic_are_bad_input_and_sizes_at_its_ends_are_answered) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(sizes_beyond_the_arithmetic_are_bad_input_and_sizes_at_its_ends_are_answered,
+                        scratch::InFolder) {
     const auto prepared = [&](const std::string& diameters) {
-        scratch::write(folder / "p.toml", "[packing]\ndisks = 8\ndiameters = " + diameters + "\nseed = 2\n");
-        return run({"prepare", folder.at("p.toml"), "-o", folder.at("p.json"), "-q"});
+        return run({"prepare", folder.file("p.toml", "[packing]\ndisks = 8\ndiameters = " + diameters + "\nseed = 2\n"),
+                    "-o", folder.at("p.json"), "-q"});
     };
     expect(prepared("[1e-200, 1e200]"), 65, {"p.toml:3", "diameters", "1e+140"});
     for (const char* diameters : {"[1e-140, 1e140]", "[1.0, 1e100]", "[1e-140, 2e-140]", "[5e139, 1e140]"}) {
@@ -125,8 +122,7 @@ BOOST_AUTO_TEST_CASE(sizes_beyond_the_arithmetic_are_bad_input_and_sizes_at_its_
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_packing_in_which_nothing_can_move_is_answered_by_every_command) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_packing_in_which_nothing_can_move_is_answered_by_every_command, scratch::InFolder) {
     isostat::State state = crafted::one_disk(1, 1);
     state.packing.fixed = {1};
     state.packing.walls.upper.fill(isostat::WallKind::fixed);
@@ -143,8 +139,7 @@ BOOST_AUTO_TEST_CASE(a_packing_in_which_nothing_can_move_is_answered_by_every_co
     BOOST_TEST(!fs::exists(folder / "out"));
 }
 
-BOOST_AUTO_TEST_CASE(where_memory_allows_few_threads_the_records_are_the_same) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(where_memory_allows_few_threads_the_records_are_the_same, scratch::InFolder) {
     const std::string scene = small_scene(folder).string();
     expect(run({"run", scene, "-o", folder.at("one"), "-q", "--threads", "1"}), 0);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) // they take terabytes of addresses
@@ -162,8 +157,8 @@ BOOST_AUTO_TEST_CASE(a_library_that_changed_the_rounding_is_an_internal_failure)
     }
 }
 
-BOOST_AUTO_TEST_CASE(whatever_memory_there_is_a_command_answers_or_says_that_it_does_not_suffice) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(whatever_memory_there_is_a_command_answers_or_says_that_it_does_not_suffice,
+                        scratch::InFolder) {
     const std::string out = folder.at("out");
     expect(run({"run", small_scene(folder).string(), "-o", out, "-q"}), 0);
     for (const char* limit : {"ulimit -v 400000; ", "ulimit -v 250000; ", "ulimit -v 200000; "}) {
@@ -177,13 +172,11 @@ BOOST_AUTO_TEST_CASE(whatever_memory_there_is_a_command_answers_or_says_that_it_
     }
 }
 
-BOOST_AUTO_TEST_CASE(memory_that_does_not_suffice_is_an_internal_failure) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(memory_that_does_not_suffice_is_an_internal_failure, scratch::InFolder) {
     std::string table = "x y r\n";
     for (int k = 0; k < 400'000; ++k) {
         table += std::to_string(k % 1000) + ".25 " + std::to_string(k / 1000) + ".5 0.5\n";
     }
-    scratch::write(folder / "t.txt", table);
-    expect(run({"plateau", folder.at("t.txt")}, "ulimit -v 80000; "), 70, {"not enough memory"});
+    expect(run({"plateau", folder.file("t.txt", table)}, "ulimit -v 80000; "), 70, {"not enough memory"});
 }
 #endif

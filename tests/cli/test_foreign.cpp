@@ -37,7 +37,7 @@ BOOST_AUTO_TEST_CASE(plateau_says_what_is_wrong_with_walls_and_pseudo_atoms) {
     // Overlaps stand in three rows at most, not in every second one.
     const auto table = exact.out.substr(exact.out.find("threshold candidates"));
     const auto rows = table.substr(0, table.find("\n\n"));
-    const auto negative = std::count(rows.begin(), rows.end(), '|') == 0 ? 99 : [&rows] {
+    const auto negative = std::ranges::count(rows, '|') == 0 ? 99 : [&rows] {
         int count = 0;
         for (std::size_t at = 0; (at = rows.find('\n', at)) != std::string::npos; ++at) {
             const std::size_t first = rows.find_first_not_of(" \n", at);
@@ -49,8 +49,7 @@ BOOST_AUTO_TEST_CASE(plateau_says_what_is_wrong_with_walls_and_pseudo_atoms) {
     BOOST_TEST(negative <= 5);
 }
 
-BOOST_AUTO_TEST_CASE(rows_are_selected_by_a_column) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(rows_are_selected_by_a_column, scratch::InFolder) {
     const std::string file = folder.file(
         "start.data", "disks and a wall\n\n3 atoms\n2 atom types\n\n-4 9 xlo xhi\n-4 9 ylo yhi\n-0.5 0.5 zlo zhi\n\n"
                       "Atoms # sphere\n\n1 1 2 1 1 1 0\n2 1 2 1 3 1 0\n3 2 1 1 8 -2 0\n");
@@ -68,8 +67,7 @@ BOOST_AUTO_TEST_CASE(rows_are_selected_by_a_column) {
     expect(run({"plateau", scratch::data("vertex100.txt"), "--select", "type=1"}), 64, {"--select"});
 }
 
-BOOST_AUTO_TEST_CASE(plateau_of_a_table_with_walls_in_text_json_and_csv) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(plateau_of_a_table_with_walls_in_text_json_and_csv, scratch::InFolder) {
     const std::string file = folder.file("disks.csv", three_disks("x,y,diameter\n", "2"));
     // 0-0-0: the box fits to rounding; the top wall touches disk 2.
     Arguments arguments{"plateau", file, "--walls", "box", "--box=-0.5:3.5,-3:0.7320508075688774"};
@@ -79,14 +77,13 @@ BOOST_AUTO_TEST_CASE(plateau_of_a_table_with_walls_in_text_json_and_csv) {
     BOOST_TEST(table.starts_with("threshold,candidates,rattlers,N_f,N,rank,h,k,"));
     arguments = plus(arguments, {"--json"});
     const auto json = says(run(arguments), 0, {"\"format\":\"isostat-plateau 1\"", "\"N\":8"});
-    BOOST_TEST(std::count(json.out.begin(), json.out.end(), '\n') == 1);
+    BOOST_TEST(std::ranges::count(json.out, '\n') == 1);
     // The same numbers as radii: disks of twice the size overlap and leave the box of their walls.
     BOOST_TEST(
         contains(run(plus(arguments, {"--radius", "diameter"})).out, "radius from column 'diameter', as stated"));
 }
 
-BOOST_AUTO_TEST_CASE(what_the_user_must_state_is_asked_for) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_the_user_must_state_is_asked_for, scratch::InFolder) {
     const std::string file = folder.file("disks.txt", three_disks("", "1"));
     expect(run({"plateau", file}), 65, {"disks.txt:1", "--columns x,y,r"});
     expect(run({"plateau", file, "--columns", "x,y,r"}), 1);
@@ -112,13 +109,12 @@ BOOST_AUTO_TEST_CASE(what_the_user_must_state_is_asked_for) {
     BOOST_TEST(!std::filesystem::exists(folder / "no"));
 }
 
-BOOST_AUTO_TEST_CASE(genericity_of_a_lattice_of_equal_disks) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(genericity_of_a_lattice_of_equal_disks, scratch::InFolder) {
     const std::string lattice = packings + "square_lattice_3.toml";
     says(run({"genericity", lattice, "--samples", "10", "--size", "1e-3,1e-12", "--csv", folder.at("g.csv")}), 0,
          {"h = 4, k = 0"});
     const std::string table = scratch::read(folder / "g.csv");
-    BOOST_TEST(std::count(table.begin(), table.end(), '\n') == 21);
+    BOOST_TEST(std::ranges::count(table, '\n') == 21);
     BOOST_TEST(contains(table, "proved"));
     // Equal radii that stay equal: a true tie, and never called isostatic.
     says(run({"genericity", lattice, "--samples", "3", "--size", "1e-3", "--keep-equal", "--json"}), 2,
@@ -130,12 +126,10 @@ BOOST_AUTO_TEST_CASE(genericity_of_a_state_keeps_its_contacts) {
          {"\"proved_isostatic\":3", "\"distinct_networks\":1", "\"within_original\":3"});
 }
 
-BOOST_AUTO_TEST_CASE(genericity_refuses_what_it_cannot_perturb) {
+BOOST_FIXTURE_TEST_CASE(genericity_refuses_what_it_cannot_perturb, scratch::InFolder) {
     expect(run({"genericity", packings + "arch.toml"}), 65, {"movable"});
     expect(run({"genericity", packings + "two_disks.toml", "--size", "0.7"}), 65, {"size"});
     expect(run({"genericity", packings + "two_disks.toml", "--samples", "0"}), 64, {"--samples", "is 0"});
-    const scratch::Folder folder;
-    scratch::write(folder / "x.csv", "x,y,r\n1,1,1\n");
-    expect(run({"genericity", folder.at("x.csv")}), 65,
+    expect(run({"genericity", folder.file("x.csv", "x,y,r\n1,1,1\n")}), 65,
            {"isostat import makes a state of a packing of another program"});
 }

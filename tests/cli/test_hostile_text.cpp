@@ -64,8 +64,7 @@ std::string scene_of_names(const std::vector<std::string>& names) {
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(names_of_segments_are_text_for_gnuplot_and_in_every_figure) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(names_of_segments_are_text_for_gnuplot_and_in_every_figure, scratch::InFolder) {
     scratch::write(folder / "s.toml", scene_of_names(commands));
     const std::string here = "cd '" + folder.path().string() + "'; ";
     const Outcome made = done(run({"run", "s.toml", "-o", "run"}, here));
@@ -83,18 +82,15 @@ BOOST_AUTO_TEST_CASE(names_of_segments_are_text_for_gnuplot_and_in_every_figure)
     BOOST_TEST(contains(drawn, "^_{TRACE}"));
 }
 
-BOOST_AUTO_TEST_CASE(a_name_in_a_scene_is_one_line_without_control_characters) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_name_in_a_scene_is_one_line_without_control_characters, scratch::InFolder) {
     for (const std::string& name : controls) {
-        scratch::write(folder / "s.toml", scene_of_names({name}));
-        const Outcome refused = run({"plan", folder.at("s.toml")});
+        const Outcome refused = run({"plan", folder.file("s.toml", scene_of_names({name}))});
         expect(refused, 65, {"s.toml:", "name", "one line of text"});
         expect_harmless(refused);
     }
 }
 
-BOOST_AUTO_TEST_CASE(names_in_a_folder_of_somebody_else_are_text) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(names_in_a_folder_of_somebody_else_are_text, scratch::InFolder) {
     scratch::write(folder / "s.toml", scene_of_names({"one", "two"}));
     const std::string here = "cd '" + folder.path().string() + "'; ";
     expect(run({"run", "s.toml", "-o", "run", "-q"}, here), 0);
@@ -118,8 +114,7 @@ BOOST_AUTO_TEST_CASE(names_in_a_folder_of_somebody_else_are_text) {
     expect_no_trace(folder.path());
 }
 
-BOOST_AUTO_TEST_CASE(names_of_files_do_not_command_the_terminal) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(names_of_files_do_not_command_the_terminal, scratch::InFolder) {
     const std::string state = isostat::state_text(::crafted::two_disks(1, 2, 1, 1), {});
     for (const std::string& name : {std::string("\x1b[31mred\a"), std::string("two\nlines"), std::string("\xff\x9b")}) {
         const std::string file = (folder / (name + ".json")).string();
@@ -159,8 +154,7 @@ BOOST_AUTO_TEST_CASE(names_of_files_do_not_command_the_terminal) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(words_of_files_of_other_programs_do_not_command_the_terminal) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(words_of_files_of_other_programs_do_not_command_the_terminal, scratch::InFolder) {
     const std::string bad = "\x1b[31m\a";
     const std::vector<std::string> files{
         "1\nProperties=species:S:1:pos:R:2:" + bad + ":R:1\nA 1 1 1\n",
@@ -179,7 +173,6 @@ BOOST_AUTO_TEST_CASE(words_of_files_of_other_programs_do_not_command_the_termina
         for (const char* command : {"plateau", "inspect", "genericity"}) {
             expect_harmless(run({command, folder.at("file")}));
         }
-        scratch::write(folder / "file.toml", content);
-        expect_harmless(run({"inspect", folder.at("file.toml")}));
+        expect_harmless(run({"inspect", folder.file("file.toml", content)}));
     }
 }

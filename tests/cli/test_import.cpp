@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(soft_grains_end_at_the_vertex_that_they_came_from) {
         BOOST_TEST(backbone < 25 * part + 1e-11);
         BOOST_TEST(backbone > 5 * part);
         const std::string rows = scratch::read(moved);
-        BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 101);
+        BOOST_TEST(std::ranges::count(rows, '\n') == 101);
         // The vertex is that of the sample: its file has the disks in the opposite order.
         const Packing found = read_state(folder / "s.json").state.packing;
         for (std::size_t a = 0; a < 2; ++a) {
@@ -85,8 +85,7 @@ BOOST_AUTO_TEST_CASE(soft_grains_end_at_the_vertex_that_they_came_from) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(an_imported_state_runs_under_its_load) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(an_imported_state_runs_under_its_load, scratch::InFolder) {
     const Soft soft(1e-6);
     expect(import_text(folder, soft.table(), {"--box", soft.box, "--stress", "2,2.01", "--load", "true"}), 0);
     const State state = read_state(folder / "s.json").state;
@@ -98,12 +97,10 @@ BOOST_AUTO_TEST_CASE(an_imported_state_runs_under_its_load) {
 
 /// `export.text` of YADE 2023.02a wrote the file, with six digits: 20 disks (seed 1), stiffness 1e6, its walls at
 /// `box`.
-BOOST_AUTO_TEST_CASE(soft_grains_of_yade_end_at_the_vertex_that_they_came_from) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(soft_grains_of_yade_end_at_the_vertex_that_they_came_from, scratch::InFolder) {
     const std::string out = folder.at("s.json"), start = folder.at("start.json");
     const std::string box = "0:6.797743980394215,0:6.804741233269178";
-    scratch::write(folder / "prepared.toml", "[packing]\ndisks = 20\n");
-    expect(run({"prepare", folder.at("prepared.toml"), "-o", start, "-q"}), 0);
+    expect(run({"prepare", folder.file("prepared.toml", "[packing]\ndisks = 20\n"), "-o", start, "-q"}), 0);
     const State from = read_state(start).state;
     for (const std::string contacts : {"plateau", "nearest"}) {
         BOOST_TEST_INFO_SCOPE(contacts);
@@ -115,16 +112,15 @@ BOOST_AUTO_TEST_CASE(soft_grains_of_yade_end_at_the_vertex_that_they_came_from) 
         BOOST_TEST(moved > 1e-6); // overlaps and digits
         BOOST_TEST(moved < 1e-4);
         std::vector<Contact> found = read_state(out).state.contacts, expected = from.contacts;
-        std::sort(found.begin(), found.end());
-        std::sort(expected.begin(), expected.end());
+        std::ranges::sort(found);
+        std::ranges::sort(expected);
         BOOST_TEST((found == expected));
         expect(run({"certify", out, "-o", folder.at("c.json")}), 0);
     }
     ran(folder, scene_from("s.json", up(2)));
 }
 
-BOOST_AUTO_TEST_CASE(forces_name_the_contacts_by_their_ids) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(forces_name_the_contacts_by_their_ids, scratch::InFolder) {
     const Soft soft(1e-6);
     const std::string dump = folder.at("pairs.dump");
     const std::vector<std::string> options{
@@ -141,8 +137,7 @@ BOOST_AUTO_TEST_CASE(forces_name_the_contacts_by_their_ids) {
     expect(import_text(folder, soft.table(), {"--box", soft.box, "--contacts", dump}), 64, {"--contact-columns"});
 }
 
-BOOST_AUTO_TEST_CASE(what_no_vertex_is_near_is_refused_and_nothing_is_written) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_no_vertex_is_near_is_refused_and_nothing_is_written, scratch::InFolder) {
     const Soft soft(1e-6);
     expect(import_text(folder, soft.table(), {"--box", "0:20,0:20"}), 65, {"no disk is near the right wall", "--box"});
     expect(import_text(folder, soft.table(), {"--box", "0:9,0:9"}), 65, {"centre between the walls"});
@@ -167,8 +162,7 @@ BOOST_AUTO_TEST_CASE(what_no_vertex_is_near_is_refused_and_nothing_is_written) {
     expect(import_text(folder, state_text(soft.state), {}), 65, {"is a state of this program", "--jitter"});
 }
 
-BOOST_AUTO_TEST_CASE(a_jitter_makes_equal_disks_different) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_jitter_makes_equal_disks_different, scratch::InFolder) {
     const std::string lattice = "x,y,r\n1,1,1\n3,1,1\n1,3,1\n3,3,1\n";
     expect(import_text(folder, lattice, {"--box", "0:4,0:4", "--contacts", "nearest", "--jitter", "1e-3"}), 0);
     const State state = read_state(folder / "s.json").state;
@@ -188,8 +182,7 @@ BOOST_AUTO_TEST_CASE(a_jitter_makes_equal_disks_different) {
     expect(run({"import", sample, "-o", out}), 65, {"is a state", "--jitter"});
 }
 
-BOOST_AUTO_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused, scratch::InFolder) {
     const std::string out = folder.at("s.json");
     expect(run({"import", crafted_files + "two_disks.toml", "-o", out}), 0);
     expect(run({"inspect", out}), 0);
@@ -202,8 +195,7 @@ BOOST_AUTO_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused) {
     BOOST_TEST(!fs::exists(out));
 }
 
-BOOST_AUTO_TEST_CASE(a_vertex_text_says_its_walls_and_none_that_is_refuted_is_written) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_vertex_text_says_its_walls_and_none_that_is_refuted_is_written, scratch::InFolder) {
     const std::string from = scratch::data("vertex100.txt"), out = folder.at("out.json");
     for (const auto& [option, value] : {std::pair{"--cell", "fixed"}, {"--walls", "fixed"}}) {
         expect(run({"import", from, "-o", out, option, value}), 65, {"vertex text", option});
@@ -211,8 +203,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_text_says_its_walls_and_none_that_is_refuted_is_wr
     }
 }
 
-BOOST_AUTO_TEST_CASE(what_is_exported_comes_back_as_the_same_vertex) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_is_exported_comes_back_as_the_same_vertex, scratch::InFolder) {
     const std::string from = scratch::data("vertex100.txt"), back = folder.at("back.json");
     const State state = read_state(from).state;
     const std::string box = fmt::format("0:{},0:{}", state.packing.length(0), state.packing.length(1));
@@ -228,8 +219,7 @@ BOOST_AUTO_TEST_CASE(what_is_exported_comes_back_as_the_same_vertex) {
     expect(run({"export", folder.path().string(), "-o", folder.at("b.xyz")}), 65, {"states/eq_"});
 }
 
-BOOST_AUTO_TEST_CASE(a_run_is_exported_as_frames_with_displacements) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_run_is_exported_as_frames_with_displacements, scratch::InFolder) {
     expect(run({"export", ran(folder, scene_from(scratch::data("vertex100.txt"), up(2))), "-o", folder.at("run.xyz")}),
            0);
     const std::string text = scratch::read(folder / "run.xyz");
@@ -252,8 +242,7 @@ const std::string box_of_100 = "0:13.995847242391138,0:15.063850881057951,0:13.9
 } // namespace
 
 /// Rounded to 9 to 12 digits and put into the cell: the contacts are those of the originals.
-BOOST_AUTO_TEST_CASE(spheres_of_another_program_are_imported_with_the_contacts_that_they_have) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(spheres_of_another_program_are_imported_with_the_contacts_that_they_have, scratch::InFolder) {
     const std::string out = folder.at("s.json");
     for (const auto& [file, options, contacts, rattlers, carrying] :
          {std::tuple{"box_uniform_100_1.txt", std::vector<std::string>{"--box", box_of_100}, 303, 7, 282},
@@ -273,8 +262,7 @@ BOOST_AUTO_TEST_CASE(spheres_of_another_program_are_imported_with_the_contacts_t
     }
 }
 
-BOOST_AUTO_TEST_CASE(what_is_not_written_for_spheres_is_refused_by_name) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_is_not_written_for_spheres_is_refused_by_name, scratch::InFolder) {
     const std::string file = sphere_files + "ortho_uniform_30_1.xyz", out = folder.at("s.json");
     expect(run({"import", file, "-o", out, "--contacts", "nearest"}), 64, {"packing of spheres", "--contacts"});
     expect(run({"import", file, "-o", out, "--jitter", "1e-6"}), 64, {"packing of spheres", "--jitter"});

@@ -30,9 +30,8 @@ std::string scene(const std::string& level) {
 } // namespace
 
 /// Choices are made again by a resumed run, with other arithmetic behind it and any number of threads.
-BOOST_AUTO_TEST_CASE(runs_that_choose_are_the_same_resumed_and_with_any_number_of_threads,
-                     *boost::unit_test::label("slow")) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(runs_that_choose_are_the_same_resumed_and_with_any_number_of_threads, scratch::InFolder,
+                        *boost::unit_test::label("slow")) {
     const std::string scene = folder.at("s.toml");
     scratch::write(
         scene, "[packing]\ndisks = 30\nlaw = \"bidisperse\"\nseed = 4\n[run]\nties = \"choose\"\n[output]\npictures = "
@@ -42,7 +41,7 @@ BOOST_AUTO_TEST_CASE(runs_that_choose_are_the_same_resumed_and_with_any_number_o
     expect(run({"run", scene, "-o", whole.string(), "-q", "--threads", "1"}), 0);
     const std::string events = scratch::read(whole / "events.jsonl");
     BOOST_TEST(contains(events, "\"choice\":"));
-    const auto arcs = std::count(events.begin(), events.end(), '\n');
+    const auto arcs = std::ranges::count(events, '\n');
     for (const int threads : {1, 2, 3}) {
         BOOST_TEST_INFO_SCOPE(threads << " threads");
         const fs::path out = folder / ("cut" + std::to_string(threads));
@@ -59,8 +58,7 @@ BOOST_AUTO_TEST_CASE(runs_that_choose_are_the_same_resumed_and_with_any_number_o
     }
 }
 
-BOOST_AUTO_TEST_CASE(ctrl_c_leaves_valid_files_and_resumes) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(ctrl_c_leaves_valid_files_and_resumes, scratch::InFolder) {
     const std::string scene = folder.at("s.toml");
     scratch::write_scene(scene, scene_from(scratch::data("vertex400.txt"), long_scene, "checkpoint_seconds = 0\n"));
     expect(run({"run", scene, "-o", folder.at("whole"), "-q"}), 0);
@@ -105,8 +103,7 @@ void ends_by(int signal, const std::string& pipe, const Arguments& command) {
     BOOST_TEST((WIFSIGNALED(status) && WTERMSIG(status) == signal));
 }
 
-BOOST_AUTO_TEST_CASE(one_ctrl_c_ends_a_command_that_has_written_no_records) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(one_ctrl_c_ends_a_command_that_has_written_no_records, scratch::InFolder) {
     const std::string pipe = folder.at("input"), out = folder.at("out");
     BOOST_TEST_REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
     for (const int signal : {SIGINT, SIGTERM}) {
@@ -120,8 +117,7 @@ BOOST_AUTO_TEST_CASE(one_ctrl_c_ends_a_command_that_has_written_no_records) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(verify_and_report_end_at_ctrl_c_with_a_line) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(verify_and_report_end_at_ctrl_c_with_a_line, scratch::InFolder) {
     const std::string pipe = folder.at("input"), said = folder.at("said");
     BOOST_TEST_REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
     for (const char* command : {"verify", "report"}) {
@@ -132,8 +128,7 @@ BOOST_AUTO_TEST_CASE(verify_and_report_end_at_ctrl_c_with_a_line) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(resuming_a_finished_run_changes_nothing) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(resuming_a_finished_run_changes_nothing, scratch::InFolder) {
     const std::string scene = folder.at("s.toml");
     const fs::path out = folder / "run";
     scratch::write_scene(scene, scene_from(scratch::data("vertex100.txt"), up(6)));
@@ -149,8 +144,7 @@ BOOST_AUTO_TEST_CASE(resuming_a_finished_run_changes_nothing) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_run_killed_before_its_first_equilibrium_is_one_without_equilibria) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_run_killed_before_its_first_equilibrium_is_one_without_equilibria, scratch::InFolder) {
     const std::string scene = folder.at("s.toml"), out = folder.at("run");
     scratch::write(scene, "[packing]\ndisks = 3000\n" + up(6));
     Background background({"run", scene, "-o", out, "-q"});
@@ -164,8 +158,7 @@ BOOST_AUTO_TEST_CASE(a_run_killed_before_its_first_equilibrium_is_one_without_eq
     expect(run({"verify", out}), 2, {});
 }
 
-BOOST_AUTO_TEST_CASE(a_preparation_that_is_interrupted_says_where_and_keeps_what_it_reached) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_preparation_that_is_interrupted_says_where_and_keeps_what_it_reached, scratch::InFolder) {
     const std::string scene = folder.file("s.toml", "[packing]\ndisks = 3000\n" + up(6));
     Background background({"run", scene, "-o", folder.at("run"), "-q"});
     BOOST_TEST(background.signal_at(folder / "run/run.json", 1, SIGINT)); // it is there before the preparation
@@ -215,8 +208,7 @@ BOOST_AUTO_TEST_CASE(runs_killed_again_and_again_at_random_instants_end_with_the
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_limit_of_the_file_size_is_a_failed_write_and_the_run_goes_on_later) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_limit_of_the_file_size_is_a_failed_write_and_the_run_goes_on_later, scratch::InFolder) {
     const std::string file = folder.at("s.toml");
     scratch::write_scene(file, scene("decisions"));
     expect(run({"run", file, "-o", folder.at("whole"), "-q"}), 0);
@@ -228,8 +220,7 @@ BOOST_AUTO_TEST_CASE(a_limit_of_the_file_size_is_a_failed_write_and_the_run_goes
     same_records(folder / "whole", out);
 }
 
-BOOST_AUTO_TEST_CASE(the_levels_leave_what_they_promise) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(the_levels_leave_what_they_promise, scratch::InFolder) {
     const std::string file = folder.at("s.toml");
     for (const std::string& level : {std::string("decisions"), std::string("states"), std::string("arcs")}) {
         scratch::write_scene(file, scene(level));

@@ -21,8 +21,7 @@ std::string seed(int number) {
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(verify_takes_an_ensemble_and_adds_up_its_runs) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(verify_takes_an_ensemble_and_adds_up_its_runs, scratch::InFolder) {
     const fs::path many = ensemble(folder);
     const auto answer = json_of(run({"verify", many.string(), "--json"}));
     BOOST_TEST_REQUIRE(answer["members"].size() == 3U);
@@ -37,8 +36,7 @@ BOOST_AUTO_TEST_CASE(verify_takes_an_ensemble_and_adds_up_its_runs) {
     says(run({"verify", many.string()}), 0, {"equilibria     12 of 12 proved", "rest"});
 }
 
-BOOST_AUTO_TEST_CASE(one_wrong_or_missing_run_decides_the_status_of_an_ensemble) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(one_wrong_or_missing_run_decides_the_status_of_an_ensemble, scratch::InFolder) {
     const fs::path many = ensemble(folder);
     const fs::path header = many / seed(2) / "run.json";
     const std::string text = scratch::read(header);
@@ -55,8 +53,7 @@ BOOST_AUTO_TEST_CASE(one_wrong_or_missing_run_decides_the_status_of_an_ensemble)
     says(run({"verify", many.string()}), 1, {"missing", "cannot be read", "refuted", "events.jsonl:1"});
 }
 
-BOOST_AUTO_TEST_CASE(report_takes_an_ensemble) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(report_takes_an_ensemble, scratch::InFolder) {
     const fs::path many = ensemble(folder);
     says(run({"report", many.string(), "--no-charts", "--html"}), 0, {"proved"});
     for (int number = 1; number <= 3; ++number) {

@@ -150,7 +150,7 @@ BOOST_AUTO_TEST_CASE(the_page_of_scenes_has_every_key) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_column_and_every_field) {
+BOOST_FIXTURE_TEST_CASE(the_page_of_files_has_every_column_and_every_field, scratch::InFolder) {
     const std::string page = scratch::read(project / "src/io/README.md");
     const std::vector<std::string> columns = isostat::equilibria_columns({true, true});
     BOOST_TEST(first_column(section(page, "### Columns of `equilibria.csv`")) == columns,
@@ -181,9 +181,10 @@ BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_column_and_every_field) {
     const std::set<std::string> kinds(isostat::arc_kind_words.begin(), isostat::arc_kind_words.end());
     const std::string row = table(fields, "`kind`");
     same(kinds, matches(row.substr(row.find("| ", 3), row.find('\n') - row.find("| ", 3)), "`([^`]+)`"), "kinds");
-    const scratch::Folder folder;
-    scratch::write(folder / "s.json", R"({"format": "isostat-state", "version": 2, "no_such_key": 1})");
-    same(expected_names(run({"inspect", folder.at("s.json")}), ""), first_column(section(page, "## States")), "states");
+    same(expected_names(
+             run({"inspect", folder.file("s.json", R"({"format": "isostat-state", "version": 2, "no_such_key": 1})")}),
+             ""),
+         first_column(section(page, "## States")), "states");
 }
 
 BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_key_of_a_manifest) {
@@ -233,9 +234,8 @@ BOOST_AUTO_TEST_CASE(the_pages_and_the_help_have_the_same_exit_statuses) {
          "table");
 }
 
-BOOST_AUTO_TEST_CASE(the_first_run_of_the_readme_does_what_it_shows) {
+BOOST_FIXTURE_TEST_CASE(the_first_run_of_the_readme_does_what_it_shows, scratch::InFolder) {
     const std::string page = scratch::read(project / "README.md");
-    const scratch::Folder folder;
     scratch::write(folder / "first.toml", block(page, "toml", "## A first run"));
     const std::string here = "cd " + quoted(folder.path().string()) + "; ";
     const auto known = commands_of(section(page, "## A first run"));
@@ -332,9 +332,8 @@ BOOST_AUTO_TEST_CASE(zsh_and_fish_have_every_command_option_and_value) {
     BOOST_TEST(run({"--completion", "tcsh"}).status == 64);
     for (const auto& [shell, text] : {std::pair{"zsh", &zsh}, {"fish", &fish}}) { // where they are, they read it
         const scratch::Folder folder;
-        scratch::write(folder / "completion", *text);
-        const std::string line =
-            std::string("! command -v ") + shell + " >/dev/null || " + shell + " -n " + folder.at("completion");
+        const std::string line = std::string("! command -v ") + shell + " >/dev/null || " + shell + " -n " +
+                                 folder.file("completion", *text);
         BOOST_TEST(std::system(line.c_str()) == 0, shell);
     }
 }

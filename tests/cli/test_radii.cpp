@@ -41,13 +41,13 @@ BOOST_AUTO_TEST_CASE(every_law_is_prepared_and_run, *boost::unit_test::label("sl
         const std::string text = scene(law, 3);
         expect(run_scene(folder, law == from_file ? scratch::replaced(text, "disks = 100\n", "") : text), 0);
         const std::string rows = scratch::read(folder / "run/equilibria.csv");
-        BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 5); // names, the start, three equilibria
+        BOOST_TEST(std::ranges::count(rows, '\n') == 5); // names, the start, three equilibria
         expect(run({"verify", folder.at("run")}), 0);
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_mixture_of_two_radii_ties_and_a_jitter_leaves_no_tie, *boost::unit_test::label("slow")) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_mixture_of_two_radii_ties_and_a_jitter_leaves_no_tie, scratch::InFolder,
+                        *boost::unit_test::label("slow")) {
     for (const int seed : {2, 3, 9}) {
         BOOST_TEST_INFO_SCOPE("seed " << seed);
         expect(run_scene(folder, mixture(seed, "0.0")), 2, {"tie", "equal radii: try [packing] jitter = 1e-9"});
@@ -143,7 +143,7 @@ BOOST_AUTO_TEST_CASE(a_hundred_equal_disks_are_prepared_where_ties_are_chosen, *
 }
 
 /// Where the program calls something tied, each place once: what it says, and a scene that comes there.
-BOOST_AUTO_TEST_CASE(every_tie_offers_a_jitter) {
+BOOST_FIXTURE_TEST_CASE(every_tie_offers_a_jitter, scratch::InFolder) {
     const auto mixture_30 = [](int seed) {
         const std::string law = "law = \"bidisperse\"\nseed = " + std::to_string(seed) + "\n";
         return scratch::replaced(scene(law, 30), "disks = 100", "disks = 30");
@@ -168,21 +168,19 @@ BOOST_AUTO_TEST_CASE(every_tie_offers_a_jitter) {
         const scratch::Folder folder;
         expect(run_scene(folder, tie.scene), 2, {"tie: ", tie.said, tie.offered});
     }
-    const scratch::Folder folder;
     // The load at which both forces vanish.
     const std::string state = scratch::read(ISOSTAT_EXAMPLES "/ties/two-forces.json");
     scratch::write(folder / "zero.json", scratch::replaced(state, "[1.0, 1.0]", "[1.0, 0.5]"));
     expect(run_scene(folder, scene_from("zero.json", "[[programme]]\ndo = \"down\"\nequilibria = 1\n")), 2,
            {"tie: ", "the force is exactly 0", given});
-    scratch::write(folder / "square.csv", "x,y,r\n1,1,1\n3,1,1\n1,3,1\n3,3,1\n");
     const std::string out = folder.at("s.json");
-    expect(run({"import", folder.at("square.csv"), "--box", "0:4,0:4", "--contacts", "nearest", "-o", out}), 2,
-           {"equal radii: try --jitter 1e-9"});
+    expect(run({"import", folder.file("square.csv", "x,y,r\n1,1,1\n3,1,1\n1,3,1\n3,3,1\n"), "--box", "0:4,0:4",
+                "--contacts", "nearest", "-o", out}),
+           2, {"equal radii: try --jitter 1e-9"});
     BOOST_TEST(!fs::exists(out));
 }
 
-BOOST_AUTO_TEST_CASE(the_plan_offers_a_jitter_for_equal_radii_only) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(the_plan_offers_a_jitter_for_equal_radii_only, scratch::InFolder) {
     const std::string ties = "equal radii, so that ties are common: jitter = 1e-";
     for (const auto& [packing, said] : std::vector<std::pair<std::string, std::string>>{
              {"disks = 9\nlaw = \"bidisperse\"\n", ties + "9"},

@@ -59,9 +59,8 @@ BOOST_AUTO_TEST_CASE(verify_proves_every_end_of_runs_with_100_disks, *boost::uni
 
 // At the power turn of this run both ends of a straight strut carry the same force to the last digit: the infinitesimal
 // loads order them (S4), in the run and in the checker.
-BOOST_AUTO_TEST_CASE(verify_proves_which_end_of_a_straight_strut_opens_and_refutes_the_other,
-                     *boost::unit_test::label("slow")) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(verify_proves_which_end_of_a_straight_strut_opens_and_refutes_the_other, scratch::InFolder,
+                        *boost::unit_test::label("slow")) {
     const std::string out = ran(folder, scene(100, 4, 8));
     expect(run({"verify", out}), 0);
     const std::size_t turn = scratch::read(folder / "run/events.jsonl").find("\"power_turn\":true");
@@ -78,8 +77,8 @@ BOOST_AUTO_TEST_CASE(verify_proves_every_end_of_runs_with_400_disks, *boost::uni
 
 // A pinned sphere keeps two contacts and a coordinate is held relative to it: with another one pinned the zeros show
 // (C9).
-BOOST_AUTO_TEST_CASE(zeros_of_a_pinned_sphere_are_seen_while_a_coordinate_is_held, *boost::unit_test::label("slow")) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(zeros_of_a_pinned_sphere_are_seen_while_a_coordinate_is_held, scratch::InFolder,
+                        *boost::unit_test::label("slow")) {
     const std::string out =
         ran(folder, spheres("30\nlaw = \"equal\"\njitter = 1e-3\nseed = 5\n[cell]\nkind = \"triclinic\"\n", 11));
     expect(run({"verify", out}), 0);
@@ -87,17 +86,16 @@ BOOST_AUTO_TEST_CASE(zeros_of_a_pinned_sphere_are_seen_while_a_coordinate_is_hel
 
 // A wall without force holds a sphere in the plane of its contacts: when the infinitesimal loads open that wall the
 // load does work too, and the arc does not end where the power of the infinitesimal ones turns.
-BOOST_AUTO_TEST_CASE(a_sphere_that_bears_force_leaves_its_plane_with_the_power_of_the_load,
-                     *boost::unit_test::label("slow")) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_sphere_that_bears_force_leaves_its_plane_with_the_power_of_the_load, scratch::InFolder,
+                        *boost::unit_test::label("slow")) {
     const std::string out = ran(folder, spheres("12\nlaw = \"bidisperse\"\nseed = 22\n", 3));
     says(run({"verify", out}), 0, {"4 of 4 proved"});
     BOOST_TEST(contains(scratch::read(folder / "run/events.jsonl"), "\"kind\":\"rattler\",\"opened\":\"5-top\""));
 }
 
 // A sphere that comes level with its neighbours of the same size at the wall that it meets.
-BOOST_AUTO_TEST_CASE(an_arc_may_end_where_its_power_is_0_by_counting, *boost::unit_test::label("slow")) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(an_arc_may_end_where_its_power_is_0_by_counting, scratch::InFolder,
+                        *boost::unit_test::label("slow")) {
     const std::string out = ran(folder, spheres("45\nlaw = \"bidisperse\"\nseed = 2\n", 1), {}); // ends as a tie
     expect(run({"verify", out}), 0);
     forge(out, 0, "\"power\":0.0,", "\"power\":1e-9,");

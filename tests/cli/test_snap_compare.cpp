@@ -29,8 +29,7 @@ const std::string first_box = "0:15.4590235640695,0:14.8856200965158";
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(a_soft_frame_snaps_to_a_state_that_certify_takes) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_soft_frame_snaps_to_a_state_that_certify_takes, scratch::InFolder) {
     const fs::path state = folder / "state.json";
     says(snap(0, first_box, "1,1", state), 0,
          {"156 pairs with a force", "h = 0, k = 0, 7 rattlers", "snap      vertex"});
@@ -38,8 +37,7 @@ BOOST_AUTO_TEST_CASE(a_soft_frame_snaps_to_a_state_that_certify_takes) {
     expect(run({"verify", folder.at("certificate.json")}), 0);
 }
 
-BOOST_AUTO_TEST_CASE(a_frame_of_soft_spheres_snaps_to_the_rigid_packing_that_it_stands_for) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_frame_of_soft_spheres_snaps_to_the_rigid_packing_that_it_stands_for, scratch::InFolder) {
     const std::string pressure = "1.0006650184686099e-06", state = folder.at("state.json");
     const auto snap_spheres = [&](Arguments more) {
         return run(plus({"snap", scratch::data("spheres/soft/spheres.dump"), "-o", state}, more));
@@ -66,8 +64,7 @@ BOOST_AUTO_TEST_CASE(a_frame_of_soft_spheres_snaps_to_the_rigid_packing_that_it_
            65, {"no sphere is near the right wall"});
 }
 
-BOOST_AUTO_TEST_CASE(a_stiffness_says_the_forces_that_the_file_does_not) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_stiffness_says_the_forces_that_the_file_does_not, scratch::InFolder) {
     for (const auto& [stiffness, right] : {std::pair{"1e5", true}, std::pair{"1.1e5", false}}) {
         const Outcome made = run({"snap", scratch::data("series/disks.dump"), "--frame", "0", "--box", first_box,
                                   "--stiffness", stiffness, "-o", folder.at("state.json"), "--json"});
@@ -77,8 +74,7 @@ BOOST_AUTO_TEST_CASE(a_stiffness_says_the_forces_that_the_file_does_not) {
            {"--stiffness", "is -1: expected a number from 1e-100 to"});
 }
 
-BOOST_AUTO_TEST_CASE(nominal_stresses_of_a_later_frame_press_on_the_lengths_that_are_stated) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(nominal_stresses_of_a_later_frame_press_on_the_lengths_that_are_stated, scratch::InFolder) {
     const auto rest = [&](const Arguments& more) {
         return rest_of(
             snap(4, "0:15.4667845567222,0:14.8785794068429", "1,1.18", folder / "state.json", plus({"--json"}, more)));
@@ -92,23 +88,20 @@ BOOST_AUTO_TEST_CASE(nominal_stresses_of_a_later_frame_press_on_the_lengths_that
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_wall_whose_digits_are_rounded_is_named) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_wall_whose_digits_are_rounded_is_named, scratch::InFolder) {
     const fs::path state = folder / "state.json";
     says(snap(0, "0:15.46,0:14.8856200965158", "1,1", state), 1,
          {"none with the right wall, which is ", "are digits of its position rounded?"});
     BOOST_TEST(!fs::exists(state));
 }
 
-BOOST_AUTO_TEST_CASE(contacts_are_a_dump_or_a_table_and_each_pair_stands_there_once) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(contacts_are_a_dump_or_a_table_and_each_pair_stands_there_once, scratch::InFolder) {
     const std::string dump = scratch::read(scratch::data("series/contacts.dump"));
     const std::size_t names = dump.find("ITEM: ENTRIES"), first = dump.find('\n', names) + 1;
     const std::string rows = dump.substr(first, dump.find("ITEM:", first) - first), header = "i j force\n";
     const auto made = [&](const std::string& text) {
-        scratch::write(folder / "pairs.txt", text);
         return run({"snap", scratch::data("series/disks.dump"), "--frame", "0", "--box", first_box, "--contacts",
-                    folder.at("pairs.txt"), "--contact-columns", "i,j,force", "-o", folder.at("state.json")});
+                    folder.file("pairs.txt", text), "--contact-columns", "i,j,force", "-o", folder.at("state.json")});
     };
     says(made(header + rows), 0, {"156 pairs with a force"});
     fs::remove(folder / "state.json");
@@ -117,8 +110,8 @@ BOOST_AUTO_TEST_CASE(contacts_are_a_dump_or_a_table_and_each_pair_stands_there_o
     BOOST_TEST(!fs::exists(folder / "state.json"));
 }
 
-BOOST_AUTO_TEST_CASE(soft_limits_of_a_run_in_a_cell_go_to_the_exact_ones_as_1_over_the_stiffness) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(soft_limits_of_a_run_in_a_cell_go_to_the_exact_ones_as_1_over_the_stiffness,
+                        scratch::InFolder) {
     scratch::write(folder / "cell.toml", "[packing]\ndisks = 30\nseed = 3\n[cell]\n[[programme]]\ndo = \"up\"\n"
                                          "equilibria = 2\n[output]\npictures = false\nstates_every = 1\n");
     const std::string out = folder.at("out");
@@ -152,8 +145,7 @@ BOOST_AUTO_TEST_CASE(some_frames_of_a_series_are_compared_alone) {
     expect(run({"compare", series, "--frames", "3"}), 64, {"--frames", "A:B"});
 }
 
-BOOST_AUTO_TEST_CASE(a_state_at_rest_snaps_to_itself_whatever_its_rattlers_rest_on) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_state_at_rest_snaps_to_itself_whatever_its_rattlers_rest_on, scratch::InFolder) {
     const std::string state = folder.at("state.json");
     expect(run({"import", scratch::data("vertex100.txt"), "-o", state}), 0);
     const auto made = says(run({"snap", state, "-o", folder.at("snapped.json")}), 0,
@@ -162,15 +154,13 @@ BOOST_AUTO_TEST_CASE(a_state_at_rest_snaps_to_itself_whatever_its_rattlers_rest_
     expect(run({"certify", folder.at("snapped.json"), "-o", folder.at("c.json")}), 0);
 }
 
-BOOST_AUTO_TEST_CASE(a_hyperstatic_frame_has_no_state_and_status_1) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_hyperstatic_frame_has_no_state_and_status_1, scratch::InFolder) {
     says(snap(8, "0:16.0045436303101,0:14.4378229180508", "1,1.56", folder / "state.json"), 1,
          {"snap      hyperstatic: the list has N_f = 198, N = 199"});
     BOOST_TEST(!fs::exists(folder / "state.json"));
 }
 
-BOOST_AUTO_TEST_CASE(what_snap_cannot_read_leaves_nothing) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_snap_cannot_read_leaves_nothing, scratch::InFolder) {
     const fs::path state = folder / "state.json";
     expect(run({"snap", folder.at("absent"), "-o", state.string()}), 65, {"absent"});
     expect(snap(0, "0:15", "1,1", state), 64);
@@ -178,8 +168,7 @@ BOOST_AUTO_TEST_CASE(what_snap_cannot_read_leaves_nothing) {
     BOOST_TEST(!fs::exists(state));
 }
 
-BOOST_AUTO_TEST_CASE(forces_at_another_load_are_those_of_a_state_under_it) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(forces_at_another_load_are_those_of_a_state_under_it, scratch::InFolder) {
     const std::string state = folder.at("state.json");
     expect(snap(0, first_box, "1,1", state), 0);
     const auto inside = says(run({"inspect", state, "--at", "1.03"}), 0, {"sigma = (1, 1.03)"});
@@ -192,8 +181,7 @@ BOOST_AUTO_TEST_CASE(forces_at_another_load_are_those_of_a_state_under_it) {
     expect(run({"inspect", state, "--at", "high"}), 64);
 }
 
-BOOST_AUTO_TEST_CASE(a_series_that_departs_has_status_1_and_its_tables) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_series_that_departs_has_status_1_and_its_tables, scratch::InFolder) {
     const fs::path output = folder / "comparison";
     says(run({"compare", scratch::data("series/series.toml"), "-o", output.string(), "--bundle", "0"}), 1,
          {"9 frames: 4 same, 1 early, 1 other, 2 soft, 1 moving", "FIRST DEPARTURE: frames 2 -> 3: stiffness"});
@@ -204,8 +192,7 @@ BOOST_AUTO_TEST_CASE(a_series_that_departs_has_status_1_and_its_tables) {
     BOOST_TEST(!fs::exists(folder / "none"));
 }
 
-BOOST_AUTO_TEST_CASE(report_says_where_soft_grains_would_leave_the_structures_of_a_run) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(report_says_where_soft_grains_would_leave_the_structures_of_a_run, scratch::InFolder) {
     const std::string out = ran(folder, scene_from(scratch::data("vertex100.txt"), up(2), "states_every = 1\n"));
     const auto ends = [&](const std::string& stiffness) {
         says(run({"report", out, "--no-charts", "--stiffness", stiffness}), 0, {"K for 1e-3"});

@@ -17,8 +17,7 @@ std::string state_file(const scratch::Folder& folder, const std::string& name) {
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(inspect_answers_for_a_box_a_slab_and_cells) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(inspect_answers_for_a_box_a_slab_and_cells, scratch::InFolder) {
     says(run({"inspect", state_file(folder, "box_uniform_30_1")}), 0,
          {"spheres                  30", "degrees of freedom N_f   93", "rattlers                 6 by forces",
           "(opens 5-28)", "(opens 13-23)", "isostatic equilibrium    proved", "stable                   proved",
@@ -39,8 +38,7 @@ BOOST_AUTO_TEST_CASE(inspect_answers_for_a_box_a_slab_and_cells) {
     says(run({"inspect", disks, "--singular-values", "3"}), 0, {"smallest singular values 0.0"});
 }
 
-BOOST_AUTO_TEST_CASE(a_table_of_contacts_has_a_row_for_each_and_forces_between_their_ends) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_table_of_contacts_has_a_row_for_each_and_forces_between_their_ends, scratch::InFolder) {
     expect(run({"inspect", state_file(folder, "slab_uniform_30_1"), "--contacts", folder.at("c.csv")}), 0);
     std::istringstream table(scratch::read(folder / "c.csv"));
     std::string line;
@@ -71,8 +69,7 @@ BOOST_AUTO_TEST_CASE(a_table_of_contacts_has_a_row_for_each_and_forces_between_t
     BOOST_TEST(scratch::read(folder / "mine.csv") == "x\n1\n");
 }
 
-BOOST_AUTO_TEST_CASE(plateau_and_paraview_files_take_spheres) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(plateau_and_paraview_files_take_spheres, scratch::InFolder) {
     const std::string state = state_file(folder, "ortho_uniform_30_1");
     says(run({"plateau", state, "--cell", "diagonal"}), 0,
          {"spheres                     30", "N = 84 with 2 rattlers"});
@@ -90,8 +87,7 @@ BOOST_AUTO_TEST_CASE(plateau_and_paraview_files_take_spheres) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_contact_given_twice_is_named_with_all_its_periods) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_contact_given_twice_is_named_with_all_its_periods, scratch::InFolder) {
     auto file = nlohmann::json::parse(scratch::read(state_file(folder, "tri_uniform_30_1")));
     for (const auto& contact : file["contacts"]) {
         if (contact == nlohmann::json{0, 12, {0, 0, 1}}) {
@@ -103,18 +99,11 @@ BOOST_AUTO_TEST_CASE(a_contact_given_twice_is_named_with_all_its_periods) {
     expect(run({"inspect", folder.at("twice.json")}), 65, {"twice.json", "0-12(0,0,1)", "each contact once"});
 }
 
-BOOST_AUTO_TEST_CASE(a_picture_shows_every_sphere_its_forces_and_three_cuts) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_picture_shows_every_sphere_its_forces_and_three_cuts, scratch::InFolder) {
     for (const std::string name : {"box_uniform_30_1", "slab_uniform_30_1", "tri_uniform_30_1"}) {
         expect(run({"report", state_file(folder, name), "-o", folder.at(name)}), 0);
         const std::string svg = scratch::read(folder / name / ("forces_" + name + ".svg"));
-        const auto count = [&svg](const std::string& word) {
-            int found = 0;
-            for (std::size_t at = svg.find(word); at != std::string::npos; at = svg.find(word, at + 1)) {
-                ++found;
-            }
-            return found;
-        };
+        const auto count = [&svg](const std::string& word) { return scratch::count(svg, word); };
         const auto file = isostat::test::read_spheres(name);
         BOOST_TEST(count("class=\"force\"") == file["expected"]["contacts_with_force"].get<int>());
         BOOST_TEST(count("<circle") > 30 + 3 * 5);
@@ -123,8 +112,7 @@ BOOST_AUTO_TEST_CASE(a_picture_shows_every_sphere_its_forces_and_three_cuts) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_run_of_spheres_names_what_it_loads_by_axis) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_run_of_spheres_names_what_it_loads_by_axis, scratch::InFolder) {
     (void)state_file(folder, "box_uniform_30_1");
     const auto scene = [&](const std::string& load, const std::string& programme) {
         scratch::write(folder / "s.toml", "[packing]\nfile = \"box_uniform_30_1.json\"\n" + load +
@@ -154,8 +142,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_spheres_names_what_it_loads_by_axis) {
     expect(run({"run", folder.at("s.toml"), "-o", folder.at("not")}), 65, {"sigma1/sigma3", "not negative"});
 }
 
-BOOST_AUTO_TEST_CASE(what_takes_disks_only_says_so_in_one_sentence) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_takes_disks_only_says_so_in_one_sentence, scratch::InFolder) {
     const std::string state = state_file(folder, "box_uniform_30_1");
     expect(run({"report", scratch::data("cells/tilt_16.json"), "--html", "-o", folder.at("no")}), 64,
            {"a view of spheres"});

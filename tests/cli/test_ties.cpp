@@ -72,8 +72,7 @@ BOOST_AUTO_TEST_CASE(ties_stop_the_run_or_are_settled_and_the_records_say_how) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_refused_with_its_self_stress_or_followed) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_hyperstatic_start_is_refused_with_its_self_stress_or_followed, scratch::InFolder) {
     ran(folder, stopped("equal-pair"), 65,
         {"h = 1", "self-stresses", "0-top", "1-top", "0-bottom", "1-bottom", "ties = \"choose\""});
     expect(run({"run", example("equal-pair.toml"), "-o", folder.at("run"), "-q"}), 0);
@@ -84,9 +83,9 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_refused_with_its_self_stress_or_foll
     says(run({"plan", example("equal-pair.toml")}), 0, {"first order in the radii", "rho from seed 1"});
 }
 
-BOOST_AUTO_TEST_CASE(a_list_that_is_dependent_where_an_arc_ends_is_exchanged_before_and_recorded) {
+BOOST_FIXTURE_TEST_CASE(a_list_that_is_dependent_where_an_arc_ends_is_exchanged_before_and_recorded,
+                        scratch::InFolder) {
     // 12 equal disks: the contact that closes does not stop the motion, a pair that rests does.
-    const scratch::Folder folder;
     ran(folder,
         "[packing]\ndisks = 12\ndiameters = [1.0, 1.0]\nseed = 7\n[run]\nties = \"choose\"\n[[programme]]\ndo = "
         "\"up\"\n"

@@ -10,8 +10,7 @@ using namespace program;
 using isostat::state_text;
 namespace fs = std::filesystem;
 
-BOOST_AUTO_TEST_CASE(verify_answers_for_every_claim_of_a_certificate) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(verify_answers_for_every_claim_of_a_certificate, scratch::InFolder) {
     const std::string state = scratch::data("vertex100.txt");
     const std::string good = folder.at("good.json");
     expect(run({"certify", state, "-o", good}), 0);
@@ -28,12 +27,10 @@ BOOST_AUTO_TEST_CASE(verify_answers_for_every_claim_of_a_certificate) {
     BOOST_TEST(answer["checks"][0]["numbers"]["rank"] == 202);
 
     // Another input than the one that is named.
-    scratch::write(folder / "other.txt", scratch::read(state) + "\n");
-    says(run({"verify", good, "--input", folder.at("other.txt")}), 1, {"refuted"});
+    says(run({"verify", good, "--input", folder.file("other.txt", scratch::read(state) + "\n")}), 1, {"refuted"});
 }
 
-BOOST_AUTO_TEST_CASE(certificates_of_spheres_are_made_and_verified) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(certificates_of_spheres_are_made_and_verified, scratch::InFolder) {
     const std::string file = folder.at("spheres.json");
     const std::string made = folder.at("certificate.json");
     isostat::write_state(file, isostat::test::state_of_spheres(isostat::test::read_spheres("tri_uniform_30_1")));
@@ -45,8 +42,7 @@ BOOST_AUTO_TEST_CASE(certificates_of_spheres_are_made_and_verified) {
     says(run({"verify", made}), 1, {"gaps           refuted", to_string(forged.claims.gaps->where, 3)});
 }
 
-BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apart) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apart, scratch::InFolder) {
     const std::string file = folder.at("certificate.json");
     expect(run({"certify", scratch::data("vertex100.txt"), "-o", file}), 0);
     const isostat::Certificate original = isostat::read_certificate(file);
@@ -70,8 +66,7 @@ BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apar
 }
 
 // A certificate whose state is not that of the file, with the hash of the file.
-BOOST_AUTO_TEST_CASE(the_state_of_a_certificate_is_compared_with_the_input_itself) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(the_state_of_a_certificate_is_compared_with_the_input_itself, scratch::InFolder) {
     const std::string input = folder.at("two.json"), file = folder.at("two.cert.json");
     scratch::write(input, isostat::state_text(crafted::two_disks(1, 2, 1, 1)));
     expect(run({"certify", input, "-o", file}), 0);
@@ -84,8 +79,7 @@ BOOST_AUTO_TEST_CASE(the_state_of_a_certificate_is_compared_with_the_input_itsel
          {"the list of radii of the state in the certificate is not that of"});
 }
 
-BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record, scratch::InFolder) {
     const std::string out = ran(folder, scene_from(scratch::data("vertex100.txt"), up(6)));
     const auto answer = json_of(run({"verify", out, "--json"}));
     has(answer, {{"verdict", "ends proved, way looked at"},
@@ -111,8 +105,7 @@ BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
 }
 
 // An end at a shear of 3e-4 need not be known to a thousandth of that: sigma1 = 1 is what it is measured in.
-BOOST_AUTO_TEST_CASE(a_shear_near_0_is_known_as_well_as_the_largest_stress_asks) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_shear_near_0_is_known_as_well_as_the_largest_stress_asks, scratch::InFolder) {
     const std::filesystem::path out =
         ran(folder, "[packing]\ndisks = 200\ndiameters = [1.0, 2.0]\nseed = 9\n[cell]\nkind = \"tilted\"\n[load]\n"
                     "loaded = \"tilt\"\n[output]\npictures = false\n" +
@@ -135,8 +128,7 @@ BOOST_AUTO_TEST_CASE(a_shear_near_0_is_known_as_well_as_the_largest_stress_asks)
     BOOST_TEST((said(low, "1e-18") == isostat::Verdict::refuted));
 }
 
-BOOST_AUTO_TEST_CASE(a_sample_certifies_and_its_certificate_is_verified) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_sample_certifies_and_its_certificate_is_verified, scratch::InFolder) {
     const std::string input = scratch::data("vertex100.txt");
     const std::string output = folder.at("cert.json");
     const auto made = says(run({"certify", input, "-o", output}), 0,
@@ -154,8 +146,7 @@ BOOST_AUTO_TEST_CASE(a_sample_certifies_and_its_certificate_is_verified) {
     BOOST_TEST((contains(again.out, "\"verdict\":\"proved\"") && contains(again.out, "\"refuted\":[]")));
 }
 
-BOOST_AUTO_TEST_CASE(forces_in_the_file_are_compared_and_never_used) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(forces_in_the_file_are_compared_and_never_used, scratch::InFolder) {
     const auto state = isostat::read_any_state(scratch::data("vertex100.txt")).state;
     nlohmann::json file = nlohmann::json::parse(state_text(state));
     file["forces"] = std::vector<double>(state.contacts.size(), 2.0);
@@ -169,9 +160,9 @@ BOOST_AUTO_TEST_CASE(forces_in_the_file_are_compared_and_never_used) {
     BOOST_TEST(!contains(without.out, "forces in the file"), without.out);
 }
 
-BOOST_AUTO_TEST_CASE(certify_answers_refuted_and_undecided_with_the_reason_and_still_writes_what_is_proved) {
-    const scratch::Folder folder;
-    const auto certify = [&folder](const std::string& name, const isostat::State& state) {
+BOOST_FIXTURE_TEST_CASE(certify_answers_refuted_and_undecided_with_the_reason_and_still_writes_what_is_proved,
+                        scratch::InFolder) {
+    const auto certify = [this](const std::string& name, const isostat::State& state) {
         scratch::write(folder / (name + ".json"), state_text(state));
         return run({"certify", (folder / (name + ".json")).string(), "-o", (folder / (name + ".cert")).string()});
     };
@@ -187,11 +178,10 @@ BOOST_AUTO_TEST_CASE(certify_answers_refuted_and_undecided_with_the_reason_and_s
     expect(run({"certify", folder.at("none.json")}), 64);
 }
 
-BOOST_AUTO_TEST_CASE(inspect_states_the_rank_as_stored_and_what_is_proved_of_the_true_configuration) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(inspect_states_the_rank_as_stored_and_what_is_proved_of_the_true_configuration,
+                        scratch::InFolder) {
     isostat::State state = crafted::two_disks(1, 2, 1, 1);
-    scratch::write(folder / "good.json", state_text(state));
-    says(run({"inspect", folder.at("good.json")}), 0,
+    says(run({"inspect", folder.file("good.json", state_text(state))}), 0,
          {"rank, stored coordinates 6 (exact)", "true configuration       exists within", "6 positive, 0 exactly 0"});
     // Far from any vertex: the first fact stands, the second is not claimed.
     state.packing.q[2] -= 0.5;
@@ -203,6 +193,6 @@ BOOST_AUTO_TEST_CASE(inspect_states_the_rank_as_stored_and_what_is_proved_of_the
     BOOST_TEST((contains(json.out, "\"rank_exact\":\"proved\"") && contains(json.out, "\"exists\":\"undecided\"")),
                json.out);
     // A negative force at the true vertex.
-    scratch::write(folder / "pulled.json", state_text(crafted::two_disks(1, 2, 1, 0.3)));
-    says(run({"inspect", folder.at("pulled.json"), "--json"}), 1, {"\"negative\":1"});
+    says(run({"inspect", folder.file("pulled.json", state_text(crafted::two_disks(1, 2, 1, 0.3))), "--json"}), 1,
+         {"\"negative\":1"});
 }

@@ -81,9 +81,9 @@ BOOST_AUTO_TEST_CASE(packings_that_the_checker_in_coq_does_not_cover_are_named) 
     // As a contact the bar of touching members would bear the same thrust: another packing, with the same numbers.
     isostat::State touching_dimer = crafted::two_disks(1, 2, 1, 1);
     touching_dimer.packing.bars = {{0, 1, 3}};
-    touching_dimer.contacts[static_cast<std::size_t>(
-        std::find(touching_dimer.contacts.begin(), touching_dimer.contacts.end(), crafted::pair(0, 1)) -
-        touching_dimer.contacts.begin())] = {isostat::ContactKind::bar, 0, 1};
+    touching_dimer.contacts[static_cast<std::size_t>(std::ranges::find(touching_dimer.contacts, crafted::pair(0, 1)) -
+                                                     touching_dimer.contacts.begin())] = {isostat::ContactKind::bar, 0,
+                                                                                          1};
     isostat::State pinned = isostat::read_any_state(ISOSTAT_EXAMPLES "/cells/tilted-100.json").state;
     isostat::State isotropic = pinned;
     isotropic.packing.cell.keep_shape();

@@ -5,9 +5,8 @@
 using namespace program;
 namespace fs = std::filesystem;
 
-BOOST_AUTO_TEST_CASE(the_wrong_kind_of_file_names_the_commands_that_take_it) {
-    const scratch::Folder folder;
-    const auto path = [&folder](const char* name) { return (folder / name).string(); };
+BOOST_FIXTURE_TEST_CASE(the_wrong_kind_of_file_names_the_commands_that_take_it, scratch::InFolder) {
+    const auto path = [this](const char* name) { return (folder / name).string(); };
     ran(folder, scene_from(scratch::data("vertex100.txt"), up(6)));
     expect(run({"import", scratch::data("vertex100.txt"), "-o", path("state.json")}), 0);
     expect(run({"certify", path("state.json"), "-o", path("cert.json")}), 0);
@@ -46,8 +45,7 @@ BOOST_AUTO_TEST_CASE(the_wrong_kind_of_file_names_the_commands_that_take_it) {
     BOOST_TEST(!contains(bad.err, "not for"));
 }
 
-BOOST_AUTO_TEST_CASE(a_held_coordinate_is_not_counted_as_a_contact_that_carries_force) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_held_coordinate_is_not_counted_as_a_contact_that_carries_force, scratch::InFolder) {
     const std::string file = folder.at("few.json");
     expect(run({"import", scratch::data("vertex100.txt"), "-o", file}), 0);
     std::string state = scratch::read(file);
@@ -59,8 +57,7 @@ BOOST_AUTO_TEST_CASE(a_held_coordinate_is_not_counted_as_a_contact_that_carries_
     BOOST_TEST(contains(few.out, "\"backbone\":185"), few.out.substr(0, 600));
 }
 
-BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_says_how_to_go_on) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_run_that_is_stopped_says_how_to_go_on, scratch::InFolder) {
     scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex1936.txt"), // longer than anyone waits
                                                        up(100000)));
     const std::string scene = folder.at("s.toml");
@@ -78,8 +75,7 @@ BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_says_how_to_go_on) {
     BOOST_TEST(false, "the run had not begun after ten minutes");
 }
 
-BOOST_AUTO_TEST_CASE(a_file_that_is_not_there_or_is_for_others_is_told_before_a_missing_option) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_file_that_is_not_there_or_is_for_others_is_told_before_a_missing_option, scratch::InFolder) {
     const std::string none = folder.at("none.toml"), scene = folder.at("s.toml");
     scratch::write(scene, "[packing]\ndisks = 10\n");
     for (const char* command : {"run", "ensemble", "certify", "import", "export"}) {
@@ -90,12 +86,11 @@ BOOST_AUTO_TEST_CASE(a_file_that_is_not_there_or_is_for_others_is_told_before_a_
     expect(run({"run"}), 64, {"required"});
 }
 
-BOOST_AUTO_TEST_CASE(a_file_of_no_format_is_shown_by_its_beginning) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_file_of_no_format_is_shown_by_its_beginning, scratch::InFolder) {
     scratch::write(folder / "junk", "hello\x1b[2J, this is a letter and no packing at all\n1 2 3\n");
     for (const char* command : {"inspect", "report"}) {
         expect(run({command, folder.at("junk")}), 65, {"neither a state", "'hello\\x1b[2J, this is a letter and"});
     }
-    scratch::write(folder / "s.toml", "[packing]\ndisks = 10\n");
-    expect(run({"report", folder.at("s.toml")}), 65, {"neither a state", "'[packing]'", "is a scene"});
+    expect(run({"report", folder.file("s.toml", "[packing]\ndisks = 10\n")}), 65,
+           {"neither a state", "'[packing]'", "is a scene"});
 }

@@ -44,6 +44,18 @@ inline void is_file(const isostat::compare::FrameResult& frame, const std::strin
     BOOST_TEST((frame.reason.find(words) != std::string::npos), frame.reason);
 }
 
+/// All frames are those of the exact run, which rearranged.
+inline void are_same(const isostat::compare::Comparison& result, std::size_t frames) {
+    BOOST_TEST(result.status == 0);
+    BOOST_TEST(result.path_end.empty(), result.path_end);
+    BOOST_TEST_REQUIRE(result.frames.size() == frames);
+    BOOST_TEST(result.frames.back().expected > 0);
+    for (const auto& frame : result.frames) {
+        BOOST_TEST((frame.status == isostat::compare::FrameStatus::same), isostat::compare::to_string(frame.status)
+                                                                              << ": " << frame.reason);
+    }
+}
+
 /// The first `frames` frames, to be damaged, in a folder of their own.
 class Copy {
   public:

@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(frames_whose_stresses_all_vary_are_placed_by_their_ratio) {
         const series::Lines header = series::words_of(dump[Copy::line(dump, 0, 0) - 1]);
         std::vector<std::size_t> out;
         for (const std::string& name : names) {
-            out.push_back(static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin()) - 2);
+            out.push_back(static_cast<std::size_t>(std::ranges::find(header, name) - header.begin()) - 2);
         }
         return out;
     };
@@ -247,7 +247,7 @@ BOOST_AUTO_TEST_CASE(frames_that_are_all_the_exact_equilibrium_give_0) {
     BOOST_TEST(result.status == 0);
     BOOST_TEST(!result.departure.has_value());
     const std::string text = compare::frames_csv(result);
-    BOOST_TEST(std::count(text.begin(), text.end(), '\n') == 4);
+    BOOST_TEST(std::ranges::count(text, '\n') == 4);
     // Another order of the rows of a dump is the same frame.
     Copy turned(3);
     std::swap(turned.disk(1, 3), turned.disk(1, 60));
@@ -402,11 +402,10 @@ BOOST_AUTO_TEST_CASE(bad_input_is_named_with_file_and_row) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_files_of_a_comparison_are_complete) {
+BOOST_FIXTURE_TEST_CASE(the_files_of_a_comparison_are_complete, scratch::InFolder) {
     const Copy copy(3);
     compare::SeriesReader reader(copy.write());
     const Comparison result = compare::compare(reader);
-    const scratch::Folder folder;
     (void)compare::write_comparison(folder / "out", reader.series(), result);
     for (const char* name : {"comparison.csv", "path.csv", "comparison.json", "comparison.dat", "comparison.gp"}) {
         BOOST_TEST(!scratch::read((folder / "out") / name).empty(), name);
@@ -415,13 +414,12 @@ BOOST_AUTO_TEST_CASE(the_files_of_a_comparison_are_complete) {
     BOOST_TEST(contains(scratch::read(folder / "out" / "comparison.json"), "\"same\": 3"));
 }
 
-BOOST_AUTO_TEST_CASE(the_figure_has_no_curve_without_a_point) {
+BOOST_FIXTURE_TEST_CASE(the_figure_has_no_curve_without_a_point, scratch::InFolder) {
     Copy copy(2);
     copy.restate("stiffness = 1e5", "stiffness = 2e5");
     compare::SeriesReader reader(copy.write());
     const Comparison result = compare::compare(reader);
     BOOST_TEST((result.frames[0].status == FrameStatus::file));
-    const scratch::Folder folder;
     (void)compare::write_comparison(folder / "out", reader.series(), result);
     const std::string script = scratch::read(folder / "out" / "comparison.gp");
     BOOST_TEST(contains(script, "title \"law\""));
@@ -437,9 +435,8 @@ BOOST_AUTO_TEST_CASE(a_wall_that_drifts_while_the_disks_balance_is_in_motion) {
     BOOST_TEST(result.status == 2); // nothing was compared
 }
 
-BOOST_AUTO_TEST_CASE(hertzian_contacts_have_their_own_law) {
+BOOST_FIXTURE_TEST_CASE(hertzian_contacts_have_their_own_law, scratch::InFolder) {
     // Frames of gran/hertz/history, with contacts of disks and walls.
-    const scratch::Folder folder;
     for (const char* name : {"disks.dump", "contacts.dump", "frames.csv"}) {
         std::filesystem::copy(scratch::data("hertz/" + std::string(name)), folder / name);
     }

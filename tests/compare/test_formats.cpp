@@ -240,7 +240,7 @@ BOOST_AUTO_TEST_CASE(a_frame_in_motion_is_on_the_arc_of_the_exact_run_whose_cont
         std::erase(kept, arcs[k].opened);
         frames[k].result.status = FrameStatus::moving;
         frames[k].pressed = kept;
-        std::sort(frames[k].pressed.begin(), frames[k].pressed.end());
+        std::ranges::sort(frames[k].pressed);
         kept.push_back(arcs[k].closed);
     }
     const Contact first = frames[1].pressed.front();

@@ -142,14 +142,13 @@ BOOST_AUTO_TEST_CASE(overlaps_that_digits_hide_leave_a_frame_without_forces_unde
     BOOST_TEST(says(frame.reason, "within the digits of the files"), frame.reason);
 }
 
-BOOST_AUTO_TEST_CASE(the_figure_is_drawn_where_there_is_no_exact_run) {
+BOOST_FIXTURE_TEST_CASE(the_figure_is_drawn_where_there_is_no_exact_run, scratch::InFolder) {
     // Every frame is refused, so there is no exact run: gnuplot does not count blocks without a line.
     Copy copy(2);
     copy.restate("stiffness = 1e5", "stiffness = 2e5");
     compare::SeriesReader reader(copy.write());
     const Comparison result = compare::compare(reader);
     BOOST_TEST(result.path.empty());
-    const scratch::Folder folder;
     const std::string failure = compare::write_comparison(folder / "out", reader.series(), result);
     const std::string data = scratch::read(folder / "out" / "comparison.dat");
     const std::string script = scratch::read(folder / "out" / "comparison.gp");

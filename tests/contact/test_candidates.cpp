@@ -3,7 +3,9 @@
 #include "oracle/geometry.hpp"
 #include "oracle/packings.hpp"
 #include "oracle/pairs.hpp"
+#include "support/free_grains.hpp"
 #include "support/scale.hpp"
+#include "support/units.hpp"
 
 #include <gmpxx.h>
 
@@ -28,7 +30,7 @@ struct ExactGaps : Geometry<mpq_class> {
 /// Two-sided: nothing below the reach is missing, nothing above it (beyond rounding) is listed.
 void check_against_every_pair(const Packing& packing, double fraction) {
     const CandidateList list = find_candidates(packing, fraction);
-    BOOST_TEST(std::is_sorted(list.contacts.begin(), list.contacts.end()));
+    BOOST_TEST(std::ranges::is_sorted(list.contacts));
     BOOST_TEST(list.reach == fraction * packing.min_radius());
     const std::set<Contact> listed(list.contacts.begin(), list.contacts.end());
     BOOST_TEST(listed.size() == list.contacts.size());
@@ -50,7 +52,7 @@ Verdict exact_verdict(const Packing& packing, double allowance) {
     const ExactGaps exact(packing);
     const auto pairs = all_pairs(packing);
     const bool overlaps =
-        std::any_of(pairs.begin(), pairs.end(), [&](const Contact& c) { return exact.sign_beyond(c, -allowance) < 0; });
+        std::ranges::any_of(pairs, [&](const Contact& c) { return exact.sign_beyond(c, -allowance) < 0; });
     return overlaps ? Verdict::refuted : Verdict::proved;
 }
 
@@ -71,10 +73,7 @@ Packing pair_at(double x, double y, double r0, double r1) {
 
 /// Spheres each of which touches one before it, or nearly, without overlap; `axes` that they spread along.
 Packing spheres_that_cling(Random& random, int axes) {
-    Packing packing;
-    packing.dimension = packing.cell.dimension = 3;
-    packing.walls = Walls::none();
-    packing.radius = {1};
+    Packing packing = crafted::free_grains({1}, {}, 3);
     packing.q = {0, 0, 0};
     const double ratio = random.integer(2) == 0 ? 1 : random.real(1, 4);
     for (int tries = 0; tries < 400; ++tries) {
@@ -109,10 +108,9 @@ BOOST_AUTO_TEST_CASE(edges_of_spheres_are_all_the_pairs_that_the_grid_finds) {
     for (int trial = 0; trial < isostat::testing::scaled(40); ++trial) {
         const Packing packing = spheres_that_cling(random, trial % 4 == 0 ? trial / 4 % 3 + 1 : 3); // flat ones too
         const double reach = 0.82 * packing.min_radius();
-        const auto edges = near_edges_in_space(packing, reach);
-        BOOST_TEST_REQUIRE(edges.has_value());
-        BOOST_TEST((*edges == pairs_within(packing, reach)));
-        BOOST_TEST(edges->size() + 1 >= packing.radius.size() / 2);
+        const auto edges = required(near_edges_in_space(packing, reach));
+        BOOST_TEST((edges == pairs_within(packing, reach)));
+        BOOST_TEST(edges.size() + 1 >= packing.radius.size() / 2);
     }
     Packing octahedron = spheres_that_cling(random, 1);
     const double s = std::sqrt(2.0); // of three diagonals with the gap of T6 one is an edge
@@ -242,7 +240,7 @@ BOOST_AUTO_TEST_CASE(the_pair_list_is_the_one_of_brute_force) {
 BOOST_AUTO_TEST_CASE(extreme_units_and_size_ratios_fall_back_on_the_grid) {
     for (const double scale : {0x1p-1000, 0x1p-500, 0x1p-40, 1.0, 0x1p40, 0x1p500, 0x1p1000}) {
         Packing packing = square_lattice(4, 2.25 * scale);
-        std::fill(packing.radius.begin(), packing.radius.end(), scale);
+        std::ranges::fill(packing.radius, scale);
         check_against_every_pair(packing, 0.82);
         check_verdict(packing, 0);
         packing.q[1] = packing.q[3] - 2 * scale; // tangent to the next one
@@ -281,11 +279,7 @@ BOOST_AUTO_TEST_CASE(powers_of_two_in_the_unit_change_nothing) {
     const std::vector<Contact> reference = find_candidates(packing, 0.82).contacts;
     for (const int exponent : {-900, -560, -20, 20, 560, 900}) {
         Packing scaled = packing;
-        for (std::vector<double>* lengths : {&scaled.q, &scaled.radius}) {
-            for (double& x : *lengths) {
-                x = std::ldexp(x, exponent);
-            }
-        }
+        units::stretch(scaled, std::ldexp(1.0, exponent));
         BOOST_TEST((find_candidates(scaled, 0.82).contacts == reference));
         check_verdict(scaled, 0);
     }

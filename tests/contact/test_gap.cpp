@@ -83,9 +83,7 @@ BOOST_AUTO_TEST_CASE(gradients_and_curvatures_are_derivatives_of_the_gap) {
     for (int repeat = 0; repeat < testing::scaled(300); ++repeat) {
         const Packing packing = random_pair(random, 1);
         std::vector<double> v(6);
-        for (double& c : v) {
-            c = random.real(-1, 1);
-        }
+        std::ranges::generate(v, [&] { return random.real(-1, 1); });
         for (const Contact& contact : every_kind) {
             const auto along = [&](double t) {
                 Packing moved = packing;
@@ -168,8 +166,8 @@ BOOST_AUTO_TEST_CASE(contact_sets_contain_exactly_their_members) {
             std::swap(members[k], members[static_cast<std::size_t>(random.integer(static_cast<int>(k) + 1))]);
         }
         const ContactSet set(members, n);
-        BOOST_TEST(std::all_of(members.begin(), members.end(), [&](const Contact& c) { return set.contains(c); }));
-        BOOST_TEST(std::none_of(others.begin(), others.end(), [&](const Contact& c) { return set.contains(c); }));
+        BOOST_TEST(std::ranges::all_of(members, [&](const Contact& c) { return set.contains(c); }));
+        BOOST_TEST(std::ranges::none_of(others, [&](const Contact& c) { return set.contains(c); }));
     }
 }
 
@@ -181,7 +179,7 @@ BOOST_AUTO_TEST_CASE(a_separation_is_the_sum_of_its_coordinates_with_their_signs
             sum[component] += sign * q[k];
             order.push_back(k);
         });
-        BOOST_TEST(std::is_sorted(order.begin(), order.end()));
+        BOOST_TEST(std::ranges::is_sorted(order));
         if (contact.kind == ContactKind::disk_disk) {
             const auto r = separation(layout, q, contact);
             BOOST_TEST(r == sum, boost::test_tools::per_element());

@@ -5,6 +5,7 @@
 #include "contact/other_pairs.hpp"
 #include "packing/bodies.hpp"
 #include "support/cells.hpp"
+#include "support/free_grains.hpp"
 #include "support/test.hpp"
 
 #include <isostat/core/result.hpp>
@@ -33,7 +34,7 @@ std::vector<Contact> by_definition(const Packing& packing, double reach) {
             }
         }
     }
-    std::sort(pairs.begin(), pairs.end());
+    std::ranges::sort(pairs);
     return pairs;
 }
 
@@ -72,7 +73,7 @@ Packing random_cell(const Draw& draw, std::mt19937_64& random) {
 }
 
 bool all_there(const std::vector<Contact>& wanted, const std::vector<Contact>& found) {
-    return std::includes(found.begin(), found.end(), wanted.begin(), wanted.end());
+    return std::ranges::includes(found, wanted);
 }
 
 /// Bodies of three members each, two of which overlap deeply, at random places: bodies overlap too.
@@ -111,7 +112,7 @@ BOOST_AUTO_TEST_CASE(a_pair_many_periods_apart_is_listed_whatever_its_sums_lose)
     const double computed = isostat::gap(packing, pair);
     BOOST_TEST(computed == 0x1.6666666667584p+0 - 1);
     const auto near = isostat::near_pairs(packing, computed - 8e-13).pairs;
-    BOOST_TEST((std::find(near.begin(), near.end(), pair) != near.end()));
+    BOOST_TEST((std::ranges::find(near, pair) != near.end()));
 }
 
 BOOST_AUTO_TEST_CASE(pairs_are_all_found_in_cells_of_one_disk_and_more) {
@@ -139,7 +140,7 @@ BOOST_AUTO_TEST_CASE(a_flat_cell_has_images_several_periods_away) {
     const auto found = isostat::near_pairs(state.packing, 0.5).pairs;
     const std::vector<Contact> wanted = by_definition(state.packing, 0.5);
     BOOST_TEST((found == wanted));
-    BOOST_TEST((std::find(found.begin(), found.end(), cells::across(0, 0, -2, 1)) != found.end()));
+    BOOST_TEST((std::ranges::find(found, cells::across(0, 0, -2, 1)) != found.end()));
 }
 
 BOOST_AUTO_TEST_CASE(overlaps_with_images_are_found) {
@@ -179,10 +180,7 @@ BOOST_AUTO_TEST_CASE(one_contact_has_one_name) {
 BOOST_AUTO_TEST_CASE(a_nearest_pair_that_no_list_reaches_is_far) {
     // One disk that touches its image; the next image is a period further, in a cell that leans over `lean` heights.
     const auto next_pair = [](double lean) {
-        Packing packing;
-        packing.walls = isostat::Walls::none();
-        packing.radius = {1};
-        packing.q = {0, 0, 2, 100, 100 * lean};
+        Packing packing = crafted::free_grains({1}, {0, 0, 2, 100, 100 * lean});
         packing.cell = {{true, true}, {true, true}, {true}, 0};
         return isostat::other_pairs(packing, {cells::across(0, 0, 1, 0)});
     };
@@ -222,16 +220,13 @@ BOOST_AUTO_TEST_CASE(pairs_of_clumps_are_all_but_those_of_one_body) {
 }
 
 BOOST_AUTO_TEST_CASE(a_member_and_the_image_of_another_are_a_pair) {
-    Packing p;
-    p.walls = isostat::Walls::none();
+    Packing p = crafted::free_grains({1, 1}, {5, 5, 6, 5, 3.1, 9, 0});
     p.cell.repeat();
     p.cell.move(true, true);
-    p.radius = {1, 1};
-    p.q = {5, 5, 6, 5, 3.1, 9, 0};
     p.bars = {{0, 1, 1}};
     const std::vector<Contact> found = isostat::near_pairs(p, 0.3).pairs;
-    BOOST_TEST((std::find(found.begin(), found.end(), isostat::pair_of(0, 1, {{-1, 0, 0}})) != found.end()));
-    BOOST_TEST((std::find(found.begin(), found.end(), isostat::pair_of(0, 1)) == found.end()));
+    BOOST_TEST((std::ranges::find(found, isostat::pair_of(0, 1, {{-1, 0, 0}})) != found.end()));
+    BOOST_TEST((std::ranges::find(found, isostat::pair_of(0, 1)) == found.end()));
 }
 
 BOOST_AUTO_TEST_CASE(a_single_body_has_no_pair_but_with_the_walls) {

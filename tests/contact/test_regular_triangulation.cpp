@@ -82,9 +82,8 @@ void check_edges(const Packing& packing, const Triangulation& triangulation) {
 void check_complete(const Packing& packing, const Triangulation& triangulation) {
     check_edges(packing, triangulation);
     const double reach = 0.82 * packing.min_radius();
-    const auto near = near_edges(packing, reach, triangulation);
-    BOOST_REQUIRE(near.has_value());
-    BOOST_TEST((*near == pairs_within(packing, reach)));
+    const auto near = required(near_edges(packing, reach, triangulation));
+    BOOST_TEST((near == pairs_within(packing, reach)));
 }
 
 } // namespace
@@ -267,7 +266,7 @@ BOOST_AUTO_TEST_CASE(equal_disks_in_one_place_are_not_taken_for_one) {
     append(packing, packing.q[0], packing.q[1], packing.radius[0]);
     BOOST_TEST((Triangulation::build(packing) == nullptr));
     const CandidateList list = find_candidates(packing, 0.8);
-    BOOST_TEST(std::binary_search(list.contacts.begin(), list.contacts.end(), Contact{ContactKind::disk_disk, 0, 30}));
+    BOOST_TEST(std::ranges::binary_search(list.contacts, Contact{ContactKind::disk_disk, 0, 30}));
     BOOST_TEST((list.contacts == pairs_within(packing, list.reach)));
 }
 

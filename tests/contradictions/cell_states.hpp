@@ -89,7 +89,7 @@ inline bool add_rattler(State& state, Random& random) {
         }
         state.packing.q.insert(state.packing.q.begin() + static_cast<long>(axes) * count, at.begin(), at.end());
         state.contacts.insert(state.contacts.end(), contacts.begin(), contacts.end());
-        std::sort(state.contacts.begin(), state.contacts.end());
+        std::ranges::sort(state.contacts);
         state.load.infinitesimal.insert(state.load.infinitesimal.end(), axes, 0);
         const Truth truth(state);
         if (truth.known && (truth.others.empty() || truth.others.front().gap > 0)) {
@@ -159,7 +159,7 @@ inline std::optional<State> in_small_cell(CellKind kind, Random& random) {
 /// The length along x does not move; as often as not it is such that the images of the largest disk touch.
 inline std::optional<State> in_cell_of_fixed_length(Random& random) {
     CellOptions options = cell_options(CellKind::tilted, 1 + random.integer(4), random);
-    const double widest = 2 * *std::max_element(options.radii.begin(), options.radii.end());
+    const double widest = 2 * *std::ranges::max_element(options.radii);
     options.fixed_length = random.integer(2) == 0 ? widest : widest * random.real(1, 2);
     return in_small_cell(options, random);
 }
@@ -285,7 +285,7 @@ inline std::optional<State> exact_cell(Random& random, bool fixed = false) {
         state.contacts = {
             both(-1, 0), both(0, 0), own(0, 1, 0), {ContactKind::lower_wall, 0, 1}, {ContactKind::upper_wall, 1, 1}};
     }
-    std::sort(state.contacts.begin(), state.contacts.end());
+    std::ranges::sort(state.contacts);
     state.load.reference_length = {1.0 + random.integer(3), 1.0 + random.integer(3)};
     state.load.stress = {static_cast<double>(random.integer(6)), static_cast<double>(random.integer(6))};
     state.load.shear = {p.cell.tilt_moves[0] ? random.integer(7) - 3.0 : 0.0};

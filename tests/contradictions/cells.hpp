@@ -183,7 +183,7 @@ inline std::optional<State> hard(const SoftCell& soft, const CellOptions& option
     state.load.stress = {options.force[0], options.force[1]};
     state.load.shear = {options.kind == CellKind::tilted ? options.shear_force : 0};
     state.load.infinitesimal.assign(2 * options.radii.size(), 0.0);
-    std::sort(state.contacts.begin(), state.contacts.end());
+    std::ranges::sort(state.contacts);
     return polish(state) ? std::optional(state) : std::nullopt;
 }
 
@@ -231,7 +231,7 @@ inline void describe_otherwise(State& state, Random& random) {
         by.push_back(image);
     }
     state = cells::with_other_representatives(std::move(state), by);
-    std::sort(state.contacts.begin(), state.contacts.end());
+    std::ranges::sort(state.contacts);
     state.packing.cell.pin = random.integer(p.disk_count());
 }
 

@@ -40,7 +40,7 @@ class Motions {
                 touching_.push_back(c);
             }
         };
-        std::for_each(contacts.begin(), contacts.end(), touches);
+        std::ranges::for_each(contacts, touches);
         for (const OtherPair& other : truth.others) {
             if (sign_of(other.gap, Real(state.packing.min_radius())) == 0) {
                 touches(other.pair);

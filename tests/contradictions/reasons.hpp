@@ -35,9 +35,8 @@ inline constexpr std::array reasons{
 
 /// Of a run by its first message, what others follow from. Empty: the table names none.
 inline std::string reason_of(const std::string& message) {
-    const auto row = std::find_if(reasons.begin(), reasons.end(), [&message](const Reason& reason) {
-        return message.find(reason.words) != std::string::npos;
-    });
+    const auto row = std::ranges::find_if(
+        reasons, [&message](const Reason& reason) { return message.find(reason.words) != std::string::npos; });
     return row == reasons.end() ? std::string() : std::string(row->row);
 }
 

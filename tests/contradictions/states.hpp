@@ -2,6 +2,7 @@
 // States that lie at the thresholds of the program's decisions, class by class.
 
 #include "contradictions/cell_states.hpp"
+#include "support/free_grains.hpp"
 
 namespace contradictions {
 
@@ -156,18 +157,14 @@ inline std::optional<State> with_fixed(Random& random, bool overlapping) {
 
 /// A disk between two fixed ones, off the straight line by 1e-1 to 1e-12, loaded across it.
 inline std::optional<State> strut(Random& random) {
-    State state;
     const double delta = std::pow(10.0, -random.real(1, 9)) * (random.integer(2) == 0 ? 1 : -1);
     const std::array<double, 3> r{random.real(0.5, 1), random.real(0.5, 1), random.real(0.5, 1)};
-    state.packing.radius = {r[0], r[1], r[2]};
-    state.packing.fixed = {1, 1, 0};
-    state.packing.walls = isostat::Walls::none();
     const double left = r[0] + r[2];
     const double right = r[1] + r[2];
     const double c1 = std::sqrt(1 - delta * delta);
     const double s2 = delta * left / right;
-    state.packing.q = {0, 0, left * c1 + right * std::sqrt(1 - s2 * s2), 0, left * c1, left * delta, 0, 0};
-    state.contacts = {{ContactKind::disk_disk, 0, 2}, {ContactKind::disk_disk, 1, 2}};
+    State state = ::crafted::held_by_two(
+        {r[0], r[1], r[2]}, {0, 0, left * c1 + right * std::sqrt(1 - s2 * s2), 0, left * c1, left * delta});
     state.load.infinitesimal = {0, 0, 0, 0, random.real(-1, 1), random.real(-1, 1)};
     state.load.stress = {1, 1};
     state.load.reference_length = {1, 1};

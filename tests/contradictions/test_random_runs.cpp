@@ -94,9 +94,8 @@ class Comparison {
         expect(real.unbounded == std::isinf(value), std::string(name) + " is infinite, or should be");
         if (!real.unbounded && std::isfinite(value)) {
             within(name, value, bound, real.stress);
-            const bool right = std::any_of(real.opens.begin(), real.opens.end(), [&](int l) {
-                return state_.contacts[static_cast<std::size_t>(l)] == opens;
-            });
+            const bool right = std::ranges::any_of(
+                real.opens, [&](int l) { return state_.contacts[static_cast<std::size_t>(l)] == opens; });
             expect(right, std::string(name) + " opens another contact than " + to_string(opens));
         }
     }
@@ -368,7 +367,7 @@ BOOST_AUTO_TEST_CASE(a_power_that_turns_right_after_the_start_is_seen_to_turn) {
     RandomRun run = run_from("small_power_at_start.json", +1);
     run.options.rule = OpeningRule::least_negative;
     const std::string events = Again(run).events();
-    BOOST_TEST(std::count(events.begin(), events.end(), '\n') >= 391);
+    BOOST_TEST(std::ranges::count(events, '\n') >= 391);
     BOOST_TEST(events.find("\"work\":-") == std::string::npos);
     BOOST_TEST(events.find("\"opened\":\"32-left\",\"closed\":\"held") != std::string::npos);
 }

@@ -100,7 +100,7 @@ Verdict run_from(const State& state, const Truth& truth, Count& tally, Objection
     const auto& arcs = played.records.arcs;
     if (!arcs.empty() && arcs.front().equilibrium == 0) {
         const std::vector<Contact> right = truth.most_negative();
-        if (std::find(right.begin(), right.end(), arcs.front().opened) == right.end()) {
+        if (std::ranges::find(right, arcs.front().opened) == right.end()) {
             wrong.push_back("a run opens " + to_string(arcs.front().opened) + ", not " +
                             (right.empty() ? "nothing" : to_string(right.front())));
         }
@@ -133,7 +133,7 @@ Verdict crafted_verdict(const State& state) {
     isostat::crafted::ExactPacking packing = isostat::crafted::exact_copy(state.packing);
     const auto contacts = isostat::crafted::exact_contacts(packing);
     std::vector<Contact> listed = state.contacts;
-    std::sort(listed.begin(), listed.end());
+    std::ranges::sort(listed);
     if (!contacts.ok() || contacts.value() != listed) {
         return Verdict::undecided;
     }
@@ -189,15 +189,11 @@ Objections ask(const State& state, const Truth& truth, bool run, Count& tally) {
     certificate.claims = certified.claims;
     answers.certify = certified.verdict;
     tally.exact += certified.verdict == Verdict::undecided && equilibrium == 0 ? 1 : 0;
-    for (std::string& other : oracle::objections(certified.claims, state, truth)) {
-        wrong.push_back(std::move(other));
-    }
+    std::ranges::copy(oracle::objections(certified.claims, state, truth), std::back_inserter(wrong));
     if (run || state.packing.dimension == plane || !state.packing.cell.any()) { // in exact numbers, which takes 50 ms
         check_counts(state, certified.claims, wrong);
     }
-    for (std::string& other : jamming_objections(state, truth, certified)) {
-        wrong.push_back(std::move(other));
-    }
+    std::ranges::copy(jamming_objections(state, truth, certified), std::back_inserter(wrong));
     const Verification verified = verify(certificate);
     answers.verify = verified.verdict;
     for (const ClaimCheck& check : verified.checks) {

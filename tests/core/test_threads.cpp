@@ -178,7 +178,7 @@ BOOST_AUTO_TEST_CASE(nothing_of_an_task_is_left_running_when_it_is_dropped, *boo
     for (int round = 0; round < 200; ++round) {
         std::vector<int> written(1000, 0);
         {
-            Task task([&] { std::fill(written.begin(), written.end(), 1); });
+            Task task([&] { std::ranges::fill(written, 1); });
         }
         const int first = written.front();
         BOOST_TEST((written == std::vector<int>(written.size(), first)));

@@ -13,8 +13,8 @@ namespace isostat::crafted {
 /// 0 is interior to the hull exactly when no open angle of pi or more is free of normals: each one has another strictly
 /// to its left.
 template <class Vector> bool surround(const std::vector<Vector>& normals) {
-    return !normals.empty() && std::all_of(normals.begin(), normals.end(), [&](const Vector& v) {
-        return std::any_of(normals.begin(), normals.end(), [&](const Vector& w) { return cross_sign(v, w) > 0; });
+    return !normals.empty() && std::ranges::all_of(normals, [&](const Vector& v) {
+        return std::ranges::any_of(normals, [&](const Vector& w) { return cross_sign(v, w) > 0; });
     });
 }
 

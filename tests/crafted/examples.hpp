@@ -33,7 +33,7 @@ inline std::vector<std::string> packing_files(bool spheres = false, bool clumps 
             paths.push_back(entry.path().string());
         }
     }
-    std::sort(paths.begin(), paths.end());
+    std::ranges::sort(paths);
     return paths;
 }
 

@@ -127,7 +127,7 @@ BOOST_AUTO_TEST_CASE(plateaus_of_clumps_have_the_counts_of_an_independent_progra
             BOOST_TEST((step.backbone.isostatic == Verdict::proved));
             BOOST_TEST(step.all.dof_count == 62);
             const auto inside = [](const PlateauRange& range) { return range.first < 1e-9 && range.last > 1e-9; };
-            BOOST_TEST(std::count_if(found.ranges.begin(), found.ranges.end(), inside) == 1);
+            BOOST_TEST(std::ranges::count_if(found.ranges, inside) == 1);
             BOOST_TEST((backbone_at(state.packing, 1e-9).size() == expected["N"].get<std::size_t>()));
             for (const Contact& contact : backbone_at(state.packing, 0.05)) {
                 BOOST_TEST((!contact.of_disks() ||

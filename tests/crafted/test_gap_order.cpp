@@ -1,6 +1,8 @@
 // Exact order of gaps, and rattlers of all initial parts of a contact list at once, against slow twins.
 
 #include "carrying_by_angles.hpp"
+#include "oracle/pairs.hpp"
+#include "support/free_grains.hpp"
 #include "support/scale.hpp"
 
 #include <isostat/core/result.hpp>
@@ -36,18 +38,7 @@ Packing near_lattice(std::mt19937_64& random, int m, double noise, bool walls) {
 }
 
 std::vector<Contact> all_candidates(const Packing& packing, double largest) {
-    std::vector<Contact> out;
-    for (int i = 0; i < packing.disk_count(); ++i) {
-        for (int j = i + 1; j < packing.disk_count(); ++j) {
-            out.push_back({ContactKind::disk_disk, i, j});
-        }
-        if (!(packing.walls == Walls::none())) {
-            for (int a = 0; a < 2; ++a) {
-                out.push_back({ContactKind::lower_wall, i, a});
-                out.push_back({ContactKind::upper_wall, i, a});
-            }
-        }
-    }
+    std::vector<Contact> out = isostat::oracle::all_pairs(packing);
     std::erase_if(out, [&](const Contact& c) { return gap(packing, c) > largest; });
     return out;
 }
@@ -153,10 +144,7 @@ BOOST_AUTO_TEST_CASE(the_order_of_gaps_is_that_of_3000_bits) {
 
 BOOST_AUTO_TEST_CASE(gaps_of_far_and_tiny_disks_are_ordered) {
     // The difference of the two gaps is far below the rounding of either, or is a denormal.
-    Packing packing;
-    packing.walls = Walls::none();
-    packing.radius = {1, 1, 1, 1};
-    packing.q = {1e15, 0, 1e15 + 2, 0, 0, 0, 2 + 0x1p-51, 0x1p-1060, 0, 0};
+    const Packing packing = ::crafted::free_grains({1, 1, 1, 1}, {1e15, 0, 1e15 + 2, 0, 0, 0, 2 + 0x1p-51, 0x1p-1060});
     const GapOrder order(packing);
     const auto item = [&](int i, int j) { return order.item({ContactKind::disk_disk, i, j}); };
     BOOST_TEST(order.compare(item(0, 1), item(2, 3)) < 0);
@@ -176,7 +164,7 @@ BOOST_AUTO_TEST_CASE(peeling_agrees_with_excluding_contacts_for_every_initial_pa
             packing.fixed[0] = packing.fixed[5] = 1;
         }
         std::vector<Contact> contacts = all_candidates(packing, 0.25);
-        std::shuffle(contacts.begin(), contacts.end(), random);
+        std::ranges::shuffle(contacts, random);
         const Peeling peeling = peel(packing, contacts);
         const std::size_t n = packing.radius.size();
         for (std::size_t m = 0; m <= contacts.size(); ++m) {
@@ -216,9 +204,6 @@ BOOST_AUTO_TEST_CASE(peeling_agrees_with_excluding_contacts_for_every_initial_pa
 }
 
 BOOST_AUTO_TEST_CASE(two_disks_at_one_point_are_refused) {
-    Packing packing;
-    packing.walls = Walls::none();
-    packing.radius = {1, 2};
-    packing.q = {0.5, 0.5, 0.5, 0.5, 0, 0};
+    const Packing packing = ::crafted::free_grains({1, 2}, {0.5, 0.5, 0.5, 0.5});
     BOOST_CHECK_THROW((void)peel(packing, {{ContactKind::disk_disk, 0, 1}}), isostat::Error);
 }

@@ -23,7 +23,7 @@ Genericity perturbed(const std::string& name, int samples, double size) {
 /// Force-carrying contacts of every proved sample: as many as degrees of freedom without the rattlers.
 bool all_isostatic(const Genericity& answer, const ExactPacking& exact) {
     const int dofs = isostat::DofMap(approximate(exact)).dof_count();
-    return std::all_of(answer.samples.begin(), answer.samples.end(), [&](const GenericitySample& sample) {
+    return std::ranges::all_of(answer.samples, [&](const GenericitySample& sample) {
         return !sample.failure && static_cast<int>(sample.carrying.size()) == dofs - 2 * sample.rattlers;
     });
 }

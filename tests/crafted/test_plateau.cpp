@@ -1,6 +1,7 @@
 // Counts of foreign packings against the gap threshold.
 // Which contacts of spheres can carry, and counts of spheres against the gap threshold.
 #include "crafted/peeling.hpp"
+#include "oracle/pairs.hpp"
 #include "support/scale.hpp"
 #include "support/spheres.hpp"
 #include "support/test.hpp"
@@ -225,16 +226,7 @@ BOOST_AUTO_TEST_CASE(what_follows_from_monotony_is_what_an_elimination_says, *bo
         const Plateau answer = plateau(packing, -0.05, 0.5, 0);
         skipped += 2 * static_cast<int>(answer.steps.size()) - answer.ranks_computed;
         for (const PlateauStep& step : answer.steps) {
-            std::vector<isostat::Contact> contacts;
-            for (int i = 0; i < 16; ++i) {
-                for (int j = i + 1; j < 16; ++j) {
-                    contacts.push_back({isostat::ContactKind::disk_disk, i, j});
-                }
-                for (int a = 0; sample % 2 == 0 && a < 2; ++a) {
-                    contacts.push_back({isostat::ContactKind::lower_wall, i, a});
-                    contacts.push_back({isostat::ContactKind::upper_wall, i, a});
-                }
-            }
+            std::vector<isostat::Contact> contacts = isostat::oracle::all_pairs(packing);
             std::erase_if(contacts, [&](const isostat::Contact& c) {
                 const bool fixed = packing.is_fixed(isostat::DiskId(static_cast<std::size_t>(c.i)));
                 const bool partner = c.kind == isostat::ContactKind::disk_disk
@@ -268,7 +260,7 @@ BOOST_AUTO_TEST_CASE(what_follows_from_monotony_is_what_an_elimination_says, *bo
             BOOST_REQUIRE_EQUAL(step.backbone.dof_count, counting.dof_count);
             BOOST_REQUIRE_EQUAL(step.backbone.contact_count, counting.contact_count);
             BOOST_REQUIRE_EQUAL(step.backbone.rank, counting.rank);
-            const bool inside = std::any_of(answer.ranges.begin(), answer.ranges.end(), [&](const PlateauRange& r) {
+            const bool inside = std::ranges::any_of(answer.ranges, [&](const PlateauRange& r) {
                 return r.first <= step.threshold && (step.threshold < r.last || r.open);
             });
             BOOST_REQUIRE_EQUAL(step.backbone.isostatic == Verdict::proved, inside);

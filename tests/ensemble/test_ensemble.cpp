@@ -32,7 +32,7 @@ void same_tables(const fs::path& a, const fs::path& b) {
 }
 
 long lines(const std::string& text) {
-    return std::count(text.begin(), text.end(), '\n');
+    return std::ranges::count(text, '\n');
 }
 
 /// A child process of another process that runs `word`.
@@ -80,8 +80,7 @@ Watch run_shell(
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(the_tables_do_not_depend_on_the_number_of_jobs) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(the_tables_do_not_depend_on_the_number_of_jobs, scratch::InFolder) {
     const std::string scene = folder.file("s.toml", small);
     for (const char* jobs : {"1", "2", "7"}) {
         expect(run({"ensemble", scene, "--samples", "9", "-o", (folder / jobs).string(), "-j", jobs, "-q"}), 0);
@@ -105,10 +104,9 @@ BOOST_AUTO_TEST_CASE(the_tables_do_not_depend_on_the_number_of_jobs) {
     BOOST_TEST(starts.size() == 9U);
 }
 
-BOOST_AUTO_TEST_CASE(a_sample_is_the_run_of_its_scene) {
-    const scratch::Folder folder;
-    scratch::write(folder / "s.toml", small);
-    expect(run({"ensemble", folder.at("s.toml"), "-S", "2", "--first-seed", "41", "-o", folder.at("e"), "-q"}), 0);
+BOOST_FIXTURE_TEST_CASE(a_sample_is_the_run_of_its_scene, scratch::InFolder) {
+    expect(run({"ensemble", folder.file("s.toml", small), "-S", "2", "--first-seed", "41", "-o", folder.at("e"), "-q"}),
+           0);
     scratch::write(folder / "42.toml", scratch::replaced(small, "seed = 1", "seed = 42"));
     expect(run({"run", folder.at("42.toml"), "-o", folder.at("r"), "-q"}), 0);
     const fs::path sample = folder / "e/samples/seed_000042";
@@ -118,8 +116,7 @@ BOOST_AUTO_TEST_CASE(a_sample_is_the_run_of_its_scene) {
     BOOST_TEST(scratch::read(sample / "scene.toml") == scratch::read(folder / "42.toml"));
 }
 
-BOOST_AUTO_TEST_CASE(one_sample_that_cannot_be_written_loses_no_other_and_is_made_up_for) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(one_sample_that_cannot_be_written_loses_no_other_and_is_made_up_for, scratch::InFolder) {
     const std::string scene = folder.file("s.toml", small);
     expect(run({"ensemble", scene, "-S", "4", "-o", folder.at("whole"), "-q"}), 0);
     expect(run({"ensemble", scene, "-S", "1", "-o", folder.at("e"), "-q"}), 0);
@@ -135,8 +132,7 @@ BOOST_AUTO_TEST_CASE(one_sample_that_cannot_be_written_loses_no_other_and_is_mad
     same_tables(folder / "e", folder / "whole");
 }
 
-BOOST_AUTO_TEST_CASE(a_sample_that_fails_at_its_load_is_a_result) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_sample_that_fails_at_its_load_is_a_result, scratch::InFolder) {
     const std::string text = scratch::replaced(small, "to = 1.1", "to = 1000.0") + "[run]\nmax_strain = 0.01\n";
     const std::string scene = folder.file("s.toml", text);
     const Outcome outcome = run({"ensemble", scene, "-S", "3", "-o", folder.at("e"), "--json"});
@@ -150,8 +146,7 @@ BOOST_AUTO_TEST_CASE(a_sample_that_fails_at_its_load_is_a_result) {
     BOOST_TEST((fs::last_write_time(folder / "e/samples/seed_000001/run.json") == stamp));
 }
 
-BOOST_AUTO_TEST_CASE(killed_ensembles_and_killed_samples_resume_to_the_same_tables) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(killed_ensembles_and_killed_samples_resume_to_the_same_tables, scratch::InFolder) {
     const std::string scene = folder.file("s.toml", scratch::replaced(small, "disks = 30", "disks = 200"));
     const fs::path whole = folder / "whole";
     expect(run({"ensemble", scene, "-S", "3", "-o", whole.string(), "-q"}), 0);
@@ -188,8 +183,7 @@ BOOST_AUTO_TEST_CASE(killed_ensembles_and_killed_samples_resume_to_the_same_tabl
     }
 }
 
-BOOST_AUTO_TEST_CASE(more_samples_are_added_to_a_finished_ensemble) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(more_samples_are_added_to_a_finished_ensemble, scratch::InFolder) {
     const std::string scene = folder.file("s.toml", small);
     expect(run({"ensemble", scene, "-S", "5", "-o", folder.at("five"), "-q"}), 0);
     expect(run({"ensemble", scene, "-S", "2", "-o", folder.at("e"), "-q"}), 0);
@@ -197,8 +191,7 @@ BOOST_AUTO_TEST_CASE(more_samples_are_added_to_a_finished_ensemble) {
     same_tables(folder / "e", folder / "five");
 }
 
-BOOST_AUTO_TEST_CASE(wrong_use_is_refused_before_anything_is_made) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(wrong_use_is_refused_before_anything_is_made, scratch::InFolder) {
     scratch::write(folder / "s.toml", small);
     scratch::write(folder / "other.toml", small + "# another text\n");
     scratch::write_scene(folder / "read.toml", scene_from(scratch::data("vertex100.txt"), up(6)));
@@ -225,8 +218,7 @@ BOOST_AUTO_TEST_CASE(wrong_use_is_refused_before_anything_is_made) {
 }
 
 #ifdef ISOSTAT_MPIRUN
-BOOST_AUTO_TEST_CASE(two_ranks_of_mpirun_make_the_tables_of_one_process) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(two_ranks_of_mpirun_make_the_tables_of_one_process, scratch::InFolder) {
     const std::string scene = folder.file("s.toml", small);
     const std::string mpirun =
         std::string(ISOSTAT_MPIRUN) + " --allow-run-as-root --oversubscribe -n 2 "; // Open MPI refuses both by default
@@ -252,7 +244,7 @@ BOOST_AUTO_TEST_CASE(every_end_is_told_and_none_ends_another) {
     BOOST_TEST(watch.ends.at(5).signal == 0);
     BOOST_TEST(watch.ends.at(6).signal == SIGKILL);
     std::vector<std::size_t> done = watch.done;
-    std::sort(done.begin(), done.end());
+    std::ranges::sort(done);
     BOOST_TEST((done == std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6, 7}));
 }
 
@@ -265,9 +257,8 @@ BOOST_AUTO_TEST_CASE(never_more_than_jobs_at_a_time_and_as_many_as_that) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_stop_reaches_those_that_run_and_starts_no_more) {
+BOOST_FIXTURE_TEST_CASE(a_stop_reaches_those_that_run_and_starts_no_more, scratch::InFolder) {
     std::atomic<bool> stop{false};
-    const scratch::Folder folder;
     const std::string ready = folder.at("ready");
     const Watch watch = run_shell(
         {"exec sleep 6000", "trap 'exit 5' TERM; touch " + ready + "; while :; do sleep 0.01; done", "exec sleep 6000"},

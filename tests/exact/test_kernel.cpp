@@ -68,9 +68,7 @@ Rows random_matrix(std::mt19937_64& random, int rows, int cols, int fields) {
     Rows right(inner, std::vector<Number>(static_cast<std::size_t>(cols)));
     for (auto* factor : {&left, &right}) {
         for (auto& row : *factor) {
-            for (Number& x : row) {
-                x = random_number(random, fields);
-            }
+            std::ranges::generate(row, [&] { return random_number(random, fields); });
         }
     }
     for (std::size_t i = 0; i < out.size(); ++i) {
@@ -195,9 +193,7 @@ BOOST_AUTO_TEST_CASE(inequalities_have_a_certificate_for_either_answer) {
         Rows a(static_cast<std::size_t>(rows), std::vector<Number>(static_cast<std::size_t>(cols)));
         std::vector<Number> b(static_cast<std::size_t>(rows));
         for (std::size_t i = 0; i < a.size(); ++i) {
-            for (Number& x : a[i]) {
-                x = random_number(random, 2);
-            }
+            std::ranges::generate(a[i], [&] { return random_number(random, 2); });
             b[i] = random_number(random, 2);
         }
         // The certificates are checked inside by substitution; a false one throws.

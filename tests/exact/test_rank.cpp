@@ -33,16 +33,14 @@ double any_double(Random& random) {
 template <class Number> sparse::Matrix<double> fill(const Dense<char>& pattern, int cols, Number number) {
     Dense<double> dense(pattern.size(), std::vector<double>(static_cast<std::size_t>(cols), 0.0));
     for (auto& row : dense) {
-        for (double& x : row) {
-            x = number();
-        }
+        std::ranges::generate(row, [&] { return number(); });
     }
     return compress(dense, cols, [&](std::size_t i, std::size_t j) { return pattern[i][j] != 0; });
 }
 
 sparse::Matrix<std::uint32_t> reduce31(const sparse::Matrix<double>& matrix) {
     sparse::Matrix<std::uint32_t> reduced{matrix.rows, matrix.cols, matrix.start, matrix.row, {}};
-    std::transform(matrix.value.begin(), matrix.value.end(), std::back_inserter(reduced.value), exact::residue31);
+    std::ranges::transform(matrix.value, std::back_inserter(reduced.value), exact::residue31);
     return reduced;
 }
 

@@ -1,5 +1,6 @@
 // The table and the checks that every row goes through.
 #include "contact/candidates.hpp"
+#include "core/dot.hpp"
 #include "extreme/catalogue.hpp"
 #include "oracle/truth.hpp"
 #include "support/scratch.hpp"
@@ -21,8 +22,8 @@ std::string number(double value, const char* none) {
 
 /// A cell of a table: no bars, no line breaks, not too long.
 std::string cell(std::string text) {
-    std::replace(text.begin(), text.end(), '|', '/');
-    std::replace(text.begin(), text.end(), '\n', ' ');
+    std::ranges::replace(text, '|', '/');
+    std::ranges::replace(text, '\n', ' ');
     constexpr std::size_t longest = 140;
     return text.size() > longest ? text.substr(0, longest - 3) + "..." : text;
 }
@@ -48,7 +49,7 @@ std::string markdown() {
 std::string csv() {
     std::string text = "# family,case,disks,outcome,rung,error_bound,seconds,checked_by,reason\n";
     const auto quoted = [](std::string word) {
-        std::replace(word.begin(), word.end(), '"', '\'');
+        std::ranges::replace(word, '"', '\'');
         return '"' + word + '"';
     };
     for (const Row& row : rows()) {
@@ -182,11 +183,7 @@ std::optional<Inspection> inspect(const std::string& family, const std::string& 
         row.rung = to_string(record.decided_by);
         row.checked = "no claim";
         if (record.verdict == Verdict::proved) {
-            double largest = 0;
-            for (const double f : inspection.forces) {
-                largest = std::max(largest, std::abs(f));
-            }
-            row.bound = record.force_bound / largest;
+            row.bound = record.force_bound / largest(inspection.forces);
             check_proved(state, inspection, row);
         } else if (record.verdict == Verdict::refuted && state.packing.disk_count() <= dense) {
             check_refuted(state, row);

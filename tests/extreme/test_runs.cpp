@@ -5,6 +5,7 @@
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
 #include "support/segments.hpp"
+#include "support/units.hpp"
 
 using namespace isostat;
 using namespace crafted;
@@ -71,11 +72,7 @@ State start() {
 }
 
 State scaled(State state, double length, double stress) {
-    for (std::vector<double>* list : {&state.packing.radius, &state.packing.q}) {
-        for (double& x : *list) {
-            x *= length;
-        }
-    }
+    units::stretch(state.packing, length);
     for (std::size_t a = 0; a < 2; ++a) {
         state.load.reference_length[a] *= length;
         state.load.stress[a] *= stress;

@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(kind_3_thresholds_that_nobody_asked_for_do_not_count) {
     expect(in_field("plateau", "05_torus11.xyz", {"--thresholds=-1e-17:1e-17"}), 2);
 }
 
-BOOST_AUTO_TEST_CASE(kind_4_circles_in_a_square) {
+BOOST_FIXTURE_TEST_CASE(kind_4_circles_in_a_square, scratch::InFolder) {
     auto more = in_square("fixed", radius_of_13);
     more.emplace_back("--json");
     const auto thirteen = json_of(in_field("plateau", "04_square13.txt", more), 1);
@@ -93,7 +93,6 @@ BOOST_AUTO_TEST_CASE(kind_4_circles_in_a_square) {
     BOOST_TEST(nineteen["widest"]["N"] == 37);
     BOOST_TEST(nineteen["widest"]["rattlers"] == 2);
     // The size alone moves: 21 = 2 x 10 + 1 contacts, and the square of this size is jammed.
-    const scratch::Folder folder;
     for (const auto& [file, radius, contacts] :
          {std::tuple{"04_square10.txt", radius_of_10, 21}, {"04_square13.txt", radius_of_13, 25}}) {
         const std::string state = folder.at(file) + ".json";
@@ -105,8 +104,7 @@ BOOST_AUTO_TEST_CASE(kind_4_circles_in_a_square) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(kind_4_a_hyperstatic_packing_is_not_isostatic_by_rounding_wherever_it_is) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(kind_4_a_hyperstatic_packing_is_not_isostatic_by_rounding_wherever_it_is, scratch::InFolder) {
     isostat::ForeignOptions options{.columns = {"-", "x", "y"}};
     options.size = isostat::SizeStatement{isostat::SizeMeaning::radius, "", std::stod(radius_of_13)};
     const isostat::Packing read = isostat::read_foreign(scratch::data("field/04_square13.txt"), options).packing;
@@ -130,8 +128,8 @@ BOOST_AUTO_TEST_CASE(kind_4_a_hyperstatic_packing_is_not_isostatic_by_rounding_w
     }
 }
 
-BOOST_AUTO_TEST_CASE(kind_4_import_into_walls_that_stay_writes_the_list_and_inspect_says_whether_it_is_jammed) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(kind_4_import_into_walls_that_stay_writes_the_list_and_inspect_says_whether_it_is_jammed,
+                        scratch::InFolder) {
     const std::string state = folder.at("fixed.json"), moved = folder.at("moved.csv");
     auto more = in_square("fixed", radius_of_7);
     more.insert(more.end(), {"-o", state, "--moved", moved});
@@ -184,9 +182,8 @@ BOOST_AUTO_TEST_CASE(kind_4_a_fixed_square_counts_no_rattlers_and_exact_numbers_
     BOOST_TEST(exact["jammed"]["disks"] == 6);
 }
 
-BOOST_AUTO_TEST_CASE(kind_4_a_square_whose_walls_stay_is_jammed_by_its_size) {
+BOOST_FIXTURE_TEST_CASE(kind_4_a_square_whose_walls_stay_is_jammed_by_its_size, scratch::InFolder) {
     // The ten circles again, every wall fixed in the state: its size gives the self-stress.
-    const scratch::Folder folder;
     auto more = in_square("square", radius_of_10);
     more.insert(more.end(), {"-o", folder.at("ten.json")});
     expect(in_field("import", "04_square10.txt", more), 0);
@@ -194,24 +191,21 @@ BOOST_AUTO_TEST_CASE(kind_4_a_square_whose_walls_stay_is_jammed_by_its_size) {
     state["walls"]["upper"] = {"fixed", "fixed"};
     state.erase("forces");
     state.erase("load");
-    scratch::write(folder / "fixed.json", state.dump());
-    const auto found = json_of(run({"inspect", folder.at("fixed.json"), "--json"}), 1);
+    const auto found = json_of(run({"inspect", folder.file("fixed.json", state.dump()), "--json"}), 1);
     BOOST_TEST(found["box"]["h"] == 1);
     BOOST_TEST(found["box"]["jammed"]["collective"]["verdict"] == "proved");
     state["contacts"].erase(state["contacts"].begin()); // one less holds nothing
-    scratch::write(folder / "loose.json", state.dump());
-    const auto loose = nlohmann::json::parse(run({"inspect", folder.at("loose.json"), "--json"}).out);
+    const auto loose = nlohmann::json::parse(run({"inspect", folder.file("loose.json", state.dump()), "--json"}).out);
     BOOST_TEST(loose["box"]["jammed"]["collective"]["verdict"] == "undecided");
     BOOST_TEST(loose["box"]["jammed"]["collective"]["if_contacts_close"]["verdict"] == "refuted");
 }
 
-BOOST_AUTO_TEST_CASE(kind_5_gaps_and_forces_below_the_digits_are_not_told_from_0) {
+BOOST_FIXTURE_TEST_CASE(kind_5_gaps_and_forces_below_the_digits_are_not_told_from_0, scratch::InFolder) {
     for (const char* lattice :
          {"05_torus3_triangular.xyz", "05_torus_n7_c1.xyz", "05_torus_n8_c2.xyz", "05_torus11.xyz"}) {
         const auto found = json_of(in_field("plateau", lattice, {"--json"}), 1);
         BOOST_TEST(found["isostatic"].empty(), lattice);
     }
-    const scratch::Folder folder;
     const std::string state = folder.at("seven.json");
     says(in_field("import", "05_torus_n7_c1.xyz", {"--cell", "isotropic", "-o", state}), 2,
          {"8 gaps", "with these gaps closed N = 21 and h = 8"});
@@ -230,8 +224,7 @@ BOOST_AUTO_TEST_CASE(kind_5_gaps_and_forces_below_the_digits_are_not_told_from_0
     says(run({"inspect", copy}), 0, {"copy                     of", "may be others of the file"});
 }
 
-BOOST_AUTO_TEST_CASE(kind_5_an_imported_state_says_what_its_file_cannot_tell) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(kind_5_an_imported_state_says_what_its_file_cannot_tell, scratch::InFolder) {
     const std::string state = folder.at("s.json");
     for (const auto& [name, gaps] :
          {std::pair{"05_torus_n7_c1.xyz", 8}, {"05_torus_n8_c2.xyz", 1}, {"05_torus11.xyz", 1}}) {
@@ -252,8 +245,7 @@ BOOST_AUTO_TEST_CASE(kind_5_an_imported_state_says_what_its_file_cannot_tell) {
     expect(run({"inspect", state}), 65, {});
 }
 
-BOOST_AUTO_TEST_CASE(kind_5_a_lattice_in_a_cell_that_stays_is_jammed_if_its_contacts_close) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(kind_5_a_lattice_in_a_cell_that_stays_is_jammed_if_its_contacts_close, scratch::InFolder) {
     const std::string state = folder.at("lattice.json");
     for (const auto& [file, contacts, strict] : {std::tuple{"05_torus3_triangular.xyz", 9, "proved"},
                                                  {"05_torus_n7_c1.xyz", 21, "proved"},
@@ -287,8 +279,7 @@ BOOST_AUTO_TEST_CASE(kind_6_a_column_that_comes_twice_and_agrees) {
     expect_base("06_type_twice.dump", {});
 }
 
-BOOST_AUTO_TEST_CASE(kind_7_vectors_of_forces) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(kind_7_vectors_of_forces, scratch::InFolder) {
     for (const auto& [file, columns] : {std::pair{"07_force_vector.dump", "c_1[1],c_1[2],c_2[1],c_2[2],c_2[3]"},
                                         {"07_positions_ids_force.dump", "c_cpl[7],c_cpl[8],c_cpl[10],c_cpl[11]"},
                                         {"07_contacts_fx_fy.csv", "i,j,fx,fy"}}) {
@@ -312,8 +303,7 @@ BOOST_AUTO_TEST_CASE(kind_7_vectors_of_forces) {
     expect(snapped("07_contacts_fx_fy.csv", "i,j,fy,fx", {}, folder), 65, {"07_contacts_fx_fy.csv"});
 }
 
-BOOST_AUTO_TEST_CASE(kind_8_forces_in_other_units_and_a_column_of_something_else) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(kind_8_forces_in_other_units_and_a_column_of_something_else, scratch::InFolder) {
     const auto units = json_of(snapped("00_base16_contacts.csv", "id1,id2,fn", {}, folder));
     BOOST_TEST(std::abs(units["forces"]["factor"].get<double>() - 1e-3) < 1e-12);
     BOOST_TEST(units["forces"]["rest_in_units"].get<double>() < 1e-11);
@@ -326,18 +316,19 @@ BOOST_AUTO_TEST_CASE(kind_8_forces_in_other_units_and_a_column_of_something_else
         const std::string line = table.substr(at, table.find('\n', at) - at);
         distances += row == 0 ? line + "\n" : line.substr(0, line.rfind(',')) + (row % 2 == 0 ? ",2.0\n" : ",2.4\n");
     }
-    scratch::write(folder / "distances.csv", distances);
     const auto found = json_of(in_field("snap", "00_base16.dump",
-                                        {"--contacts", folder.at("distances.csv"), "--contact-columns", "id1,id2,fn",
-                                         "--cell", "tilted", "-o", folder.at("state.json"), "--json"}));
+                                        {"--contacts", folder.file("distances.csv", distances), "--contact-columns",
+                                         "id1,id2,fn", "--cell", "tilted", "-o", folder.at("state.json"), "--json"}));
     BOOST_TEST(contains(found["forces"]["units"], "is the column that of the forces?"));
     // The same in a series, against its law.
     for (const char* file : {"02_flip_disks_same.dump", "02_flip_contacts.dump", "02_flip_frames.csv"}) {
         scratch::write(folder / file, scratch::read(scratch::data(std::string("field/") + file)));
     }
     const std::string manifest = scratch::read(scratch::data("field/02_noflip.toml"));
-    scratch::write(folder / "ten.toml", scratch::replaced(manifest, "stiffness = 1", "stiffness = 10"));
-    const auto frames = json_of(run({"compare", folder.at("ten.toml"), "--bundle", "0", "--json"}), 1)["frames"];
+    const auto frames =
+        json_of(run({"compare", folder.file("ten.toml", scratch::replaced(manifest, "stiffness = 1", "stiffness = 10")),
+                     "--bundle", "0", "--json"}),
+                1)["frames"];
     BOOST_TEST(frames[0]["status"] == "file");
     BOOST_TEST(contains(frames[0]["reason"], "they are 0.1 times those"), frames[0]["reason"]);
     scratch::write(folder / "none.toml",
@@ -345,8 +336,7 @@ BOOST_AUTO_TEST_CASE(kind_8_forces_in_other_units_and_a_column_of_something_else
     says(run({"compare", folder.at("none.toml"), "--bundle", "0"}), 0, {"2 same", "stiffness not tested"});
 }
 
-BOOST_AUTO_TEST_CASE(kind_9_names_in_a_comment_and_kind_26_lists_that_count_rows) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(kind_9_names_in_a_comment_and_kind_26_lists_that_count_rows, scratch::InFolder) {
     const std::vector<std::string> stress{"--stress", "0.001,0.001"};
     BOOST_TEST(json_of(snapped("09_comment_header.txt", "i,j,f", stress, folder))["N"] == 33);
     BOOST_TEST(json_of(snapped("09_comment_header_zero_based.txt", "id1,id2,fn",
@@ -379,16 +369,13 @@ BOOST_AUTO_TEST_CASE(kind_11_a_table_and_its_cell) {
     refused("11_table_of_a_cell.csv", {"--lattice", "1,1"}, {"2.8 wide in a period of 1"});
 }
 
-BOOST_AUTO_TEST_CASE(kind_12_a_file_packed_with_gzip_is_read_whole_or_refused) {
+BOOST_FIXTURE_TEST_CASE(kind_12_a_file_packed_with_gzip_is_read_whole_or_refused, scratch::InFolder) {
     expect_base("12_packed.dump.gz", {});
-    const scratch::Folder folder;
     const std::string packed = scratch::read(scratch::data("field/12_packed.dump.gz"));
     for (const std::size_t kept : {std::size_t{3}, packed.size() / 2, packed.size() - 1}) {
-        scratch::write(folder / "cut.gz", packed.substr(0, kept));
-        expect(run({"plateau", folder.at("cut.gz")}), 65, {"damaged or cut"});
+        expect(run({"plateau", folder.file("cut.gz", packed.substr(0, kept))}), 65, {"damaged or cut"});
     }
-    scratch::write(folder / "more.gz", packed + "x");
-    expect(run({"plateau", folder.at("more.gz")}), 65, {"damaged or cut"});
+    expect(run({"plateau", folder.file("more.gz", packed + "x")}), 65, {"damaged or cut"});
 }
 
 BOOST_AUTO_TEST_CASE(kind_12_files_that_are_known_and_not_read_are_named) {
@@ -455,7 +442,7 @@ BOOST_AUTO_TEST_CASE(kind_18_plain_xyz_and_lattices_of_any_kind) {
     expect_base("18_lattice4.xyz", {});
 }
 
-BOOST_AUTO_TEST_CASE(kind_19_atoms_that_are_walls) {
+BOOST_FIXTURE_TEST_CASE(kind_19_atoms_that_are_walls, scratch::InFolder) {
     const auto selected = json_of(in_field("plateau", "19_wall_atoms.dump", {"--select", "type=1,2", "--json"}), 1);
     BOOST_TEST(selected["disks"] == 4);
     const auto fixed =
@@ -464,14 +451,12 @@ BOOST_AUTO_TEST_CASE(kind_19_atoms_that_are_walls) {
     BOOST_TEST(fixed["widest"]["N"] == 20); // four pairs, and each disk touches four atoms of the walls
     BOOST_TEST(fixed["widest"]["counts"]["N_f"] == 8);
     refused("00_base16.dump", {"--fixed", "type=3"}, {"cannot move", "periodic"});
-    const scratch::Folder folder;
     expect(in_field("import", "19_wall_atoms.dump", {"--fixed", "type=3", "-o", folder.at("s.json")}), 64, {"--fixed"});
 }
 
-BOOST_AUTO_TEST_CASE(kind_20_sizes_that_are_wrong_by_a_factor) {
+BOOST_FIXTURE_TEST_CASE(kind_20_sizes_that_are_wrong_by_a_factor, scratch::InFolder) {
     says(in_field("plateau", "20_half_radii.xyz"), 2,
          {"the smallest gap is 1.99 of the smallest radius", "are the sizes wrong by a factor"});
-    const scratch::Folder folder;
     const std::string state = folder.at("s.json");
     expect(in_field("import", "20_half_radii.xyz", {"--cell", "isotropic", "-o", state}), 65,
            {"of its radius: expected at most one", "wrong by a factor", "--far"});
@@ -503,8 +488,7 @@ BOOST_AUTO_TEST_CASE(kind_23_decimals_and_their_digits) {
     BOOST_TEST(std::abs(over["smallest_gap"].get<double>() + 1e-5) < 1e-15);
 }
 
-BOOST_AUTO_TEST_CASE(kind_23_where_every_gap_is_told_the_answer_is_that_of_the_doubles) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(kind_23_where_every_gap_is_told_the_answer_is_that_of_the_doubles, scratch::InFolder) {
     const std::string state = folder.at("s.json");
     const auto answer =
         json_of(run({"import", scratch::data("yade20.txt"), "--box", "0:6.797743980394215,0:6.804741233269178", "-o",
@@ -527,8 +511,7 @@ BOOST_AUTO_TEST_CASE(kind_24_lattices_have_their_categories) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(kind_25_one_pair_through_three_images) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(kind_25_one_pair_through_three_images, scratch::InFolder) {
     const auto found =
         json_of(in_field("snap", "25_three_images.xyz",
                          {"--contacts", scratch::data("field/25_three_images_contacts.csv"), "--contact-columns",
@@ -537,8 +520,7 @@ BOOST_AUTO_TEST_CASE(kind_25_one_pair_through_three_images) {
     BOOST_TEST(found["N"] == 3);
 }
 
-BOOST_AUTO_TEST_CASE(kind_27_our_own_table_is_read_whole) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(kind_27_our_own_table_is_read_whole, scratch::InFolder) {
     says(in_field("import", "27_own_export.csv", {"-o", folder.at("s.json")}), 0,
          {"periodic along x and y", "solid fraction 0.813004"});
     expect(run({"export", folder.at("s.json"), "-o", folder.at("again.csv")}), 0);
@@ -546,12 +528,11 @@ BOOST_AUTO_TEST_CASE(kind_27_our_own_table_is_read_whole) {
     // A box, with walls where the first line says.
     expect(run({"export", scratch::data("vertex100.txt"), "-o", folder.at("box.csv")}), 0);
     says(run({"plateau", folder.at("box.csv"), "--walls", "box"}), 0, {"from N = 188 with 7 rattlers"});
-    scratch::write(folder / "other.csv", "# box of three disks\nx,y,r\n0,0,1\n2,0,1\n");
-    says(run({"plateau", folder.at("other.csv")}), 1, {"neither walls nor a cell"});
+    says(run({"plateau", folder.file("other.csv", "# box of three disks\nx,y,r\n0,0,1\n2,0,1\n")}), 1,
+         {"neither walls nor a cell"});
 }
 
-BOOST_AUTO_TEST_CASE(kind_28_a_manifest_to_begin_with) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(kind_28_a_manifest_to_begin_with, scratch::InFolder) {
     scratch::write(folder / "disks.dump", scratch::read(scratch::data("field/02_flip_disks.dump")));
     const std::string series = folder.at("series.toml");
     says(run({"compare", series, "--init", folder.at("disks.dump")}), 0, {"fill in the loads"});
@@ -579,17 +560,15 @@ BOOST_AUTO_TEST_CASE(kind_28_a_manifest_to_begin_with) {
     expect(run({"compare", series, "--bundle", "0"}), 65, {"no column 'sigma2'", "strain"});
 }
 
-BOOST_AUTO_TEST_CASE(lines_of_a_megabyte_end_no_reader) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(lines_of_a_megabyte_end_no_reader, scratch::InFolder) {
     const std::string much(1'000'000, '1');
     const std::string blank(1'000'000, ' ');
     for (const std::string& line : {"# box " + much + ":4,0:2", "# box 0:4,0:2" + blank}) { // comments like any other
-        scratch::write(folder / "long.csv", line + "\nx,y,r\n1,1,0.5\n");
-        const program::Outcome outcome = run({"plateau", folder.at("long.csv")});
+        const program::Outcome outcome = run({"plateau", folder.file("long.csv", line + "\nx,y,r\n1,1,0.5\n")});
         BOOST_TEST((outcome.status >= 0 && outcome.status <= 2), outcome.status);
     }
     for (const std::string& line : {"N = 1 ,L1= { " + much + " , 0 }", "N = 1 ," + blank + "L1= {"}) {
-        scratch::write(folder / "long.txt", line + "\n{\n1 , 1 , 0.5 ,\n}\n");
-        expect(run({"plateau", folder.at("long.txt"), "--format", "braces"}), 65, {"at most 4096 characters"});
+        expect(run({"plateau", folder.file("long.txt", line + "\n{\n1 , 1 , 0.5 ,\n}\n"), "--format", "braces"}), 65,
+               {"at most 4096 characters"});
     }
 }

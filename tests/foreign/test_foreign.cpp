@@ -40,12 +40,8 @@ ForeignOptions stated(SizeMeaning meaning, const std::string& column, double val
 }
 
 bool says(const ForeignPacking& packing, const std::string& words) {
-    for (const std::string& note : packing.notes) {
-        if (note.find(words) != std::string::npos) {
-            return true;
-        }
-    }
-    return false;
+    return std::ranges::any_of(packing.notes,
+                               [&](const std::string& note) { return note.find(words) != std::string::npos; });
 }
 
 /// The two disks of all the samples, whatever their order.
@@ -378,8 +374,7 @@ BOOST_AUTO_TEST_CASE(what_is_written_for_other_programs_is_read_bit_for_bit) {
     BOOST_TEST(csv_text(state.packing, contacts).find("\nid,x,y,r,contacts\n") != std::string::npos);
 }
 
-BOOST_AUTO_TEST_CASE(dumps_of_pairs_have_frames_and_named_columns) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(dumps_of_pairs_have_frames_and_named_columns, scratch::InFolder) {
     const std::string head = "ITEM: TIMESTEP\n5\nITEM: NUMBER OF ENTRIES\n";
     const std::string box = "ITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n0 1\nITEM: ENTRIES i j f\n";
     const std::string first = head + "1\n" + box + "7 9 1\n";

@@ -33,7 +33,7 @@ ForeignOptions in_box(std::vector<double> box, ForeignWalls walls = ForeignWalls
 
 std::string dump_of(const std::string& bounds, const std::string& columns, const std::string& atoms) {
     return fmt::format("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {}\nITEM: ATOMS {}\n{}",
-                       std::count(atoms.begin(), atoms.end(), '\n'), bounds, columns, atoms);
+                       std::ranges::count(atoms, '\n'), bounds, columns, atoms);
 }
 
 const std::string box_bounds = "ff ff ff\n0 4\n0 4\n0 8";

@@ -84,10 +84,10 @@ inline std::string unsound(const Packing& packing) {
         !(packing.fixed.empty() || packing.fixed.size() == packing.radius.size())) {
         return "sizes do not fit";
     }
-    if (!std::all_of(packing.radius.begin(), packing.radius.end(), positive)) {
+    if (!std::ranges::all_of(packing.radius, positive)) {
         return "a radius is not positive and finite";
     }
-    return std::all_of(packing.q.begin(), packing.q.end(), finite) ? "" : "a coordinate is not finite";
+    return std::ranges::all_of(packing.q, finite) ? "" : "a coordinate is not finite";
 }
 
 inline std::string unsound(const State& state) {
@@ -96,8 +96,8 @@ inline std::string unsound(const State& state) {
     }
     const int n = state.packing.disk_count();
     std::vector<Contact> sorted = state.contacts;
-    std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+    std::ranges::sort(sorted);
+    if (std::ranges::adjacent_find(sorted) != sorted.end()) {
         return "a contact comes twice";
     }
     for (const Contact& c : state.contacts) {

@@ -62,11 +62,7 @@ std::vector<std::string> cells_of(const std::string& row) {
 /// Rows of a table: lines that are neither blank nor comments, without the names if the first such line is of names.
 std::string table_rows(const std::string& text, std::size_t read) {
     std::vector<std::string> rows;
-    for (const std::string& line : lines_of(text)) {
-        if (has_content(line)) {
-            rows.push_back(line);
-        }
-    }
+    std::ranges::copy_if(lines_of(text), std::back_inserter(rows), [](const auto& line) { return has_content(line); });
     if (rows.size() != read + 1) {
         return rows_differ(read, rows.size());
     }
@@ -123,11 +119,9 @@ std::string xyz_rows(const std::string& text, std::size_t read) {
 /// said, and as many as there are axes where there are period vectors.
 std::string centre_rows(const std::string& text, std::size_t read) {
     std::vector<std::string> rows;
-    for (const std::string& line : lines_of(text)) {
-        if (has_content(line) && line.find_first_not_of(" \t\r,") != std::string::npos) {
-            rows.push_back(line);
-        }
-    }
+    std::ranges::copy_if(lines_of(text), std::back_inserter(rows), [](const std::string& line) {
+        return has_content(line) && line.find_first_not_of(" \t\r,") != std::string::npos;
+    });
     const std::size_t axes = std::stoul(rows.at(0));
     return rows.size() == 3 + read || rows.size() == 3 + axes + read ? "" : rows_differ(read, rows.size() - 3);
 }
@@ -162,7 +156,7 @@ std::string check(const std::string& changed, ForeignOptions options) {
         options.box.insert(options.box.end(), {-1e30, 1e30});
     }
     const auto far = [](double x) { return !(std::abs(x) < 1e30); };
-    const bool outside = std::any_of(read.packing.q.begin(), read.packing.q.end(), far);
+    const bool outside = std::ranges::any_of(read.packing.q, far);
     return outside ? "" : unsound(parse_foreign(changed, "FILE", options).packing);
 }
 
@@ -193,8 +187,7 @@ BOOST_AUTO_TEST_CASE(mutated_tables_with_stated_columns_lose_no_row) {
     BOOST_TEST(fuzz::fuzz("table with its own names", "x y radius\n" + bare, 1500, read).refused > 100);
 }
 
-BOOST_AUTO_TEST_CASE(mutated_series_of_frames_are_refused_by_name_or_have_sound_frames) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(mutated_series_of_frames_are_refused_by_name_or_have_sound_frames, scratch::InFolder) {
     std::filesystem::copy(scratch::data("series"), folder / "series");
     const auto read = [&](const std::filesystem::path& file, const std::string& changed) {
         scratch::write(file, changed);

@@ -169,8 +169,7 @@ BOOST_AUTO_TEST_CASE(mutated_crafted_packings_are_refused_by_name_or_inspected) 
     }
 }
 
-BOOST_AUTO_TEST_CASE(mutated_files_of_radii_are_refused_by_name_or_lose_no_row) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(mutated_files_of_radii_are_refused_by_name_or_lose_no_row, scratch::InFolder) {
     const auto read = [&](const std::string& changed) {
         scratch::write(folder / "radii.txt", changed);
         std::vector<double> radii;

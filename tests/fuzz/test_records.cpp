@@ -71,7 +71,7 @@ struct Damaged {
 std::size_t lines_with_something(const std::string& text) {
     const std::vector<std::string> lines = lines_of(text);
     return static_cast<std::size_t>(
-        std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return !line.empty(); }));
+        std::ranges::count_if(lines, [](const std::string& line) { return !line.empty(); }));
 }
 
 } // namespace

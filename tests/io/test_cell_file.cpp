@@ -107,10 +107,9 @@ BOOST_AUTO_TEST_CASE(images_are_no_contacts_of_a_box) {
     refuses(text, {"images are of a periodic"});
 }
 
-BOOST_AUTO_TEST_CASE(readers_that_take_boxes_only_say_so) {
+BOOST_FIXTURE_TEST_CASE(readers_that_take_boxes_only_say_so, scratch::InFolder) {
     expect_bad_input([] { (void)parse_state(tilted_text(), "cell.json"); },
                      {"cell.json: a periodic cell", "takes boxes only so far"});
-    const scratch::Folder folder;
     const auto path = folder.path() / "cell.json";
     write_atomically(path, tilted_text());
     expect_bad_input([&] { (void)read_state(path); }, {"a periodic cell"});

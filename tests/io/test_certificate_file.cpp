@@ -107,8 +107,7 @@ BOOST_AUTO_TEST_CASE(absent_claims_and_infinite_radii_come_back) {
     BOOST_TEST(infinite.gaps->smallest == inf);
 }
 
-BOOST_AUTO_TEST_CASE(a_certificate_survives_the_way_through_a_file) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_certificate_survives_the_way_through_a_file, scratch::InFolder) {
     Certificate certificate = full_certificate();
     certificate.state = read_state(scratch::data("vertex100.txt")).state;
     certificate.claims.forces = {};

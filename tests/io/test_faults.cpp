@@ -221,8 +221,7 @@ BOOST_FIXTURE_TEST_CASE(what_a_kill_left_is_removed_by_a_resume_and_what_others_
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_run_that_met_a_limit_of_the_file_size_goes_on_to_the_same_records) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_run_that_met_a_limit_of_the_file_size_goes_on_to_the_same_records, scratch::InFolder) {
     play(folder / "whole", RunDirectory::Mode::fresh, goal);
     const auto size = static_cast<rlim_t>(fs::file_size(folder / "whole/events.jsonl"));
     const auto handler = std::signal(SIGXFSZ, SIG_IGN);

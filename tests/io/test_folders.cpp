@@ -81,8 +81,7 @@ BOOST_AUTO_TEST_CASE(a_folder_is_a_run_when_its_run_json_says_so) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(force_removes_what_a_run_writes_and_nothing_else) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(force_removes_what_a_run_writes_and_nothing_else, scratch::InFolder) {
     fs::create_directories(folder / "states");
     fs::create_directories(folder / "certificates");
     fs::create_directories(folder / "figures/sources");
@@ -105,8 +104,7 @@ BOOST_AUTO_TEST_CASE(force_removes_what_a_run_writes_and_nothing_else) {
     BOOST_TEST(!fs::exists(folder / "certificates")); // empty
 }
 
-BOOST_AUTO_TEST_CASE(empty_folders_new_ones_and_those_of_a_sample_are_taken) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(empty_folders_new_ones_and_those_of_a_sample_are_taken, scratch::InFolder) {
     for (const char* name : {"a/b", "empty", "sample"}) {
         fs::create_directories(folder / name);
     }
@@ -119,8 +117,7 @@ BOOST_AUTO_TEST_CASE(empty_folders_new_ones_and_those_of_a_sample_are_taken) {
     BOOST_TEST(scratch::read(folder / "sample/scene.toml") == "scene");
 }
 
-BOOST_AUTO_TEST_CASE(temporary_files_take_no_name_that_somebody_has) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(temporary_files_take_no_name_that_somebody_has, scratch::InFolder) {
     scratch::write(folder / "victim", "precious");
     fs::create_symlink(folder / "victim", folder / "a.json.part");
     scratch::write(folder / "b.json.part", "precious");
@@ -140,8 +137,7 @@ BOOST_AUTO_TEST_CASE(temporary_files_take_no_name_that_somebody_has) {
     BOOST_TEST(name_of_temporary("a.json.0123456789abcdeX.part") == "a.json.0123456789abcdeX");
 }
 
-BOOST_AUTO_TEST_CASE(a_file_of_the_user_is_not_written_over) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_file_of_the_user_is_not_written_over, scratch::InFolder) {
     scratch::write(folder / "in", "format");
     scratch::write(folder / "old", "format");
     scratch::write(folder / "empty", "");

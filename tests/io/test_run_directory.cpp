@@ -77,8 +77,7 @@ bool play(const fs::path& path, Mode mode, long stop_at, bool finish, double che
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(a_run_leaves_records_states_and_a_summary) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_run_leaves_records_states_and_a_summary, scratch::InFolder) {
     BOOST_TEST(play(folder / "run", Mode::fresh, -1, true));
     const std::vector<EquilibriumRow> rows = read_equilibria(folder / "run/equilibria.csv");
     BOOST_REQUIRE_EQUAL(rows.size(), 7U);
@@ -118,7 +117,7 @@ BOOST_AUTO_TEST_CASE(every_row_has_the_columns_that_the_first_line_names_whateve
         three->assign(3, 0.5);
     }
     record.touching = 7;
-    const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
+    const auto commas = [](const std::string& line) { return std::ranges::count(line, ','); };
     for (const bool tilt : {false, true}) {
         for (const bool touching : {false, true}) {
             const std::string header = equilibria_header({tilt, touching});
@@ -155,8 +154,7 @@ BOOST_AUTO_TEST_CASE(columns_of_spheres_go_by_axis) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(every_row_of_equilibria_has_a_number_for_every_column) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(every_row_of_equilibria_has_a_number_for_every_column, scratch::InFolder) {
     play(folder / "run", Mode::fresh, -1, true);
     std::vector<std::string> lines = scratch::lines_of(folder / "run/equilibria.csv");
     BOOST_TEST(lines[0].starts_with("# number,previous,"));
@@ -173,8 +171,8 @@ BOOST_AUTO_TEST_CASE(every_row_of_equilibria_has_a_number_for_every_column) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(numbers_of_a_table_of_equilibria_are_finite_and_its_integers_written_as_such) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(numbers_of_a_table_of_equilibria_are_finite_and_its_integers_written_as_such,
+                        scratch::InFolder) {
     play(folder / "run", Mode::fresh, -1, true);
     const fs::path file = folder / "run/equilibria.csv";
     const std::string text = scratch::read(file);
@@ -209,8 +207,7 @@ BOOST_AUTO_TEST_CASE(numbers_of_a_table_of_equilibria_are_finite_and_its_integer
     }
 }
 
-BOOST_AUTO_TEST_CASE(an_interrupted_run_goes_on_to_the_same_files) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(an_interrupted_run_goes_on_to_the_same_files, scratch::InFolder) {
     BOOST_REQUIRE(play(folder / "whole", Mode::fresh, -1, true));
     // Arc 9 is inside the rearrangement of 7 arcs that leads to equilibrium 3; 1 is before the first equilibrium after
     // the start.
@@ -232,8 +229,7 @@ BOOST_AUTO_TEST_CASE(an_interrupted_run_goes_on_to_the_same_files) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(checkpoints_that_are_further_apart_lose_time_but_no_record) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(checkpoints_that_are_further_apart_lose_time_but_no_record, scratch::InFolder) {
     BOOST_REQUIRE(play(folder / "whole", Mode::fresh, -1, true));
     for (const bool finish : {true, false}) {
         const fs::path path = folder / (finish ? "finished" : "killed");
@@ -249,8 +245,7 @@ BOOST_AUTO_TEST_CASE(checkpoints_that_are_further_apart_lose_time_but_no_record)
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_record_cut_in_the_middle_by_a_kill_is_dropped) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_record_cut_in_the_middle_by_a_kill_is_dropped, scratch::InFolder) {
     BOOST_REQUIRE(play(folder / "whole", Mode::fresh, -1, true));
     BOOST_REQUIRE(!play(folder / "cut", Mode::fresh, 9, false));
     std::ofstream(folder / "cut/events.jsonl", std::ios::app) << "{\"step\":10,\"equili";
@@ -260,8 +255,7 @@ BOOST_AUTO_TEST_CASE(a_record_cut_in_the_middle_by_a_kill_is_dropped) {
     BOOST_TEST(scratch::read(folder / "cut/events.jsonl") == scratch::read(folder / "whole/events.jsonl"));
 }
 
-BOOST_AUTO_TEST_CASE(two_runs_in_one_folder_are_refused) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(two_runs_in_one_folder_are_refused, scratch::InFolder) {
     const RunDirectory first = opened(folder / "run", Mode::fresh);
     for (const auto mode : {Mode::fresh, Mode::force, Mode::resume}) {
         expect_error([&] { (void)opened(folder / "run", mode); }, ErrorKind::cannot_write,
@@ -269,8 +263,7 @@ BOOST_AUTO_TEST_CASE(two_runs_in_one_folder_are_refused) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run_is_kept_unless_told_otherwise) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_folder_that_holds_a_run_is_kept_unless_told_otherwise, scratch::InFolder) {
     play(folder / "run", Mode::fresh, -1, true);
     const std::string events = scratch::read(folder / "run/events.jsonl");
     expect_error([&] { (void)opened(folder / "run", Mode::fresh); }, ErrorKind::usage,
@@ -282,8 +275,7 @@ BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run_is_kept_unless_told_otherwise) {
     BOOST_TEST(!fs::exists(folder / "run/states/last.json"));
 }
 
-BOOST_AUTO_TEST_CASE(resuming_something_else_is_refused) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(resuming_something_else_is_refused, scratch::InFolder) {
     expect_bad_input([&] { (void)opened(folder / "none", Mode::resume); }, {"run.json", "no run to resume"});
     BOOST_REQUIRE(!play(folder / "run", Mode::fresh, 9, false));
     RunHeader other = header();
@@ -300,15 +292,13 @@ BOOST_AUTO_TEST_CASE(resuming_something_else_is_refused) {
     expect_bad_input([&] { (void)opened(folder / "run", Mode::resume); }, {"events.jsonl", "0 bytes"});
 }
 
-BOOST_AUTO_TEST_CASE(a_killed_run_has_no_summary_and_says_running) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_killed_run_has_no_summary_and_says_running, scratch::InFolder) {
     BOOST_REQUIRE(!play(folder / "run", Mode::fresh, 9, false));
     BOOST_TEST(!fs::exists(folder / "run/summary.json"));
     BOOST_TEST(scratch::read(folder / "run/run.json").find("\"status\": \"running\"") != std::string::npos);
 }
 
-BOOST_AUTO_TEST_CASE(a_run_that_was_killed_before_it_wrote_anything_is_begun_by_resume) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_run_that_was_killed_before_it_wrote_anything_is_begun_by_resume, scratch::InFolder) {
     scratch::write(folder / "lock", "");
     scratch::write(folder / "run.json.part", "{");
     {

@@ -157,8 +157,7 @@ BOOST_AUTO_TEST_CASE(every_bit_pattern_of_a_finite_number_comes_back) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_sample_survives_the_way_through_a_file) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_sample_survives_the_way_through_a_file, scratch::InFolder) {
     const State sample = read_state(scratch::data("vertex100.txt")).state;
     write_state(folder / "state.json", sample);
     check_same(sample, read_state(folder / "state.json").state);
@@ -283,8 +282,7 @@ BOOST_AUTO_TEST_CASE(entries_of_a_list_come_once_and_bounds_are_not_negative) {
         {"perturbation.zero[0][2]", "-1", "not negative"});
 }
 
-BOOST_AUTO_TEST_CASE(a_state_that_is_not_finite_is_not_written) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_state_that_is_not_finite_is_not_written, scratch::InFolder) {
     for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
         State state = ::crafted::two_disks(1, 2, 1, 1);
         state.packing.q[2] = value;
@@ -296,8 +294,7 @@ BOOST_AUTO_TEST_CASE(a_state_that_is_not_finite_is_not_written) {
     BOOST_TEST(std::filesystem::is_empty(folder.path()));
 }
 
-BOOST_AUTO_TEST_CASE(failed_writing_keeps_the_old_file_and_leaves_nothing_else) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(failed_writing_keeps_the_old_file_and_leaves_nothing_else, scratch::InFolder) {
     scratch::write(folder / "plain", "old");
     expect_error([&] { write_atomically(folder / "plain/state.json", "new"); }, ErrorKind::cannot_write,
                  {"plain/state.json", "cannot write"});
@@ -311,8 +308,7 @@ BOOST_AUTO_TEST_CASE(failed_writing_keeps_the_old_file_and_leaves_nothing_else) 
     BOOST_TEST(names == 1);
 }
 
-BOOST_AUTO_TEST_CASE(a_disk_that_is_full_leaves_the_old_file_and_no_part_of_the_new_one) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_disk_that_is_full_leaves_the_old_file_and_no_part_of_the_new_one, scratch::InFolder) {
     scratch::write(folder / "state.json", "old");
     // The system refuses the 101st byte of any file, as it would on a full disk.
     rlimit before{};
@@ -328,8 +324,7 @@ BOOST_AUTO_TEST_CASE(a_disk_that_is_full_leaves_the_old_file_and_no_part_of_the_
     BOOST_TEST(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
 }
 
-BOOST_AUTO_TEST_CASE(links_are_kept_and_pipes_are_not_replaced) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(links_are_kept_and_pipes_are_not_replaced, scratch::InFolder) {
     scratch::write(folder / "target", "old");
     std::filesystem::create_symlink(folder / "target", folder / "link");
     write_atomically(folder / "link", "new");
@@ -379,8 +374,7 @@ BOOST_AUTO_TEST_CASE(no_stress_presses_over_a_side_whose_wall_is_absent) {
     BOOST_TEST((parse_state(beside, "FILE").state.load.kind == LoadKind::true_stress));
 }
 
-BOOST_AUTO_TEST_CASE(files_that_cannot_be_read_are_named) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(files_that_cannot_be_read_are_named, scratch::InFolder) {
     expect_bad_input([&] { (void)read_state(folder / "absent.json"); }, {"absent.json", "No such file"});
     expect_bad_input([&] { (void)read_state(folder.path()); }, {folder.path().string(), "directory"});
     scratch::write(folder / "empty.json", "");
@@ -389,8 +383,7 @@ BOOST_AUTO_TEST_CASE(files_that_cannot_be_read_are_named) {
     expect_bad_input([&] { (void)read_state(folder / "blank.json"); }, {"blank.json", "empty"});
 }
 
-BOOST_AUTO_TEST_CASE(what_a_failed_preparation_leaves_is_no_state) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_a_failed_preparation_leaves_is_no_state, scratch::InFolder) {
     write_packing(folder / "left.json", ::crafted::two_disks(1, 2, 1, 1).packing, "stopped");
     expect_bad_input([&] { (void)read_state(folder / "left.json"); }, {"left.json", "isostat-packing"});
 }
@@ -415,8 +408,7 @@ BOOST_AUTO_TEST_CASE(nesting_has_an_end) {
     expect_bad_input([&] { (void)parse_state(objects, "FILE"); }, {"FILE", "deeper than 64"});
 }
 
-BOOST_AUTO_TEST_CASE(a_byte_order_mark_is_no_part_of_a_state) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_byte_order_mark_is_no_part_of_a_state, scratch::InFolder) {
     for (const std::string& text : {two_disk_text(), scratch::read(scratch::data("vertex100.txt"))}) {
         scratch::write(folder / "plain", text);
         scratch::write(folder / "marked", "\xEF\xBB\xBF" + text);

@@ -33,7 +33,7 @@ BOOST_AUTO_TEST_CASE(the_samples_have_as_many_contacts_as_degrees_of_freedom) {
         BOOST_TEST(state.load.stress[0] == 1.0);
         BOOST_TEST(state.load.stress[1] == 1.0);
         BOOST_TEST(state.load.reference_length[1] == state.packing.length(1));
-        BOOST_TEST(std::is_sorted(state.contacts.begin(), state.contacts.end()));
+        BOOST_TEST(std::ranges::is_sorted(state.contacts));
         for (const Contact& contact : state.contacts) {
             BOOST_TEST(std::abs(gap(state.packing, contact)) < 1e-13, to_string(contact));
         }

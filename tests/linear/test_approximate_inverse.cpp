@@ -43,27 +43,33 @@ std::vector<double> some_numbers(std::size_t n) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> number(-1, 1);
     std::vector<double> x(n);
-    std::generate(x.begin(), x.end(), [&] { return number(random); });
+    std::ranges::generate(x, [&] { return number(random); });
     return x;
 }
 
-/// Columns replaced by those of contacts with other partners: contact l gets what contact l + n/2 had, slightly turned.
-sparse::Matrix<double> with_exchanges(const sparse::Matrix<double>& h, const std::vector<int>& slots) {
+/// Column l is column `source(l)` of h, entry e of it `factor(l, e)` times as large.
+template <class Source, class Factor>
+sparse::Matrix<double> with_columns(const sparse::Matrix<double>& h, Source source, Factor factor) {
     sparse::Matrix<double> next;
     next.rows = next.cols = h.rows;
     next.start.push_back(0);
     for (int l = 0; l < h.cols; ++l) {
-        const bool exchanged = std::find(slots.begin(), slots.end(), l) != slots.end();
-        const auto c = static_cast<std::size_t>(l);
+        const auto c = static_cast<std::size_t>(source(l));
         for (int e = h.start[c]; e < h.start[c + 1]; ++e) {
             const auto at = static_cast<std::size_t>(e);
-            // The same grains, another direction: regular, and no longer close to the base.
             next.row.push_back(h.row[at]);
-            next.value.push_back(exchanged ? h.value[at] * (e % 2 == 0 ? 1.3 : 0.4) : h.value[at]);
+            next.value.push_back(h.value[at] * factor(l, e));
         }
         next.start.push_back(static_cast<int>(next.row.size()));
     }
     return next;
+}
+
+/// These contacts between the same grains, in another direction: regular, and no longer close to the base.
+sparse::Matrix<double> with_exchanges(const sparse::Matrix<double>& h, const std::vector<int>& slots) {
+    return with_columns(h, std::identity(), [&](int l, int e) {
+        return std::ranges::find(slots, l) == slots.end() ? 1 : e % 2 == 0 ? 1.3 : 0.4;
+    });
 }
 
 void check_solves(const ApproximateInverse& inverse, const sparse::Matrix<double>& h, const std::vector<double>& rhs) {
@@ -148,19 +154,9 @@ double entries_of_factors(const ApproximateInverse& inverse, const sparse::Matri
 
 /// Contact `slot` between the grains of contact `other`, in another direction.
 sparse::Matrix<double> with_grains_of(const sparse::Matrix<double>& h, int slot, int other) {
-    sparse::Matrix<double> next;
-    next.rows = next.cols = h.rows;
-    next.start.push_back(0);
-    for (int l = 0; l < h.cols; ++l) {
-        const auto c = static_cast<std::size_t>(l == slot ? other : l);
-        for (int e = h.start[c]; e < h.start[c + 1]; ++e) {
-            const auto at = static_cast<std::size_t>(e);
-            next.row.push_back(h.row[at]);
-            next.value.push_back(h.value[at] * (l == slot && e % 2 == 0 ? -0.7 : 1));
-        }
-        next.start.push_back(static_cast<int>(next.row.size()));
-    }
-    return next;
+    return with_columns(
+        h, [=](int l) { return l == slot ? other : l; },
+        [=](int l, int e) { return l == slot && e % 2 == 0 ? -0.7 : 1; });
 }
 
 } // namespace

@@ -73,7 +73,7 @@ BOOST_AUTO_TEST_CASE(rattlers_move_in_a_block_of_their_own_and_the_rest_stays_at
         }
         BOOST_TEST(size > 0);
         BOOST_TEST(off < 1e-11 * size);
-        const auto moving = std::count_if(quick.begin(), quick.end(), [](double c) { return c != 0; });
+        const auto moving = std::ranges::count_if(quick, [](double c) { return c != 0; });
         BOOST_TEST(moving <= static_cast<long>(quick.size() / 4));
     }
     BOOST_TEST(blocks > 20);                   // two contacts of each rattler at least
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(a_guess_changes_the_way_and_not_the_forces) {
     const auto n = static_cast<std::size_t>(proved.size());
     std::vector<double> f(n, 1.0);
     fresh.solve_forces(f);
-    const double size = std::abs(*std::max_element(f.begin(), f.end()));
+    const double size = std::abs(*std::ranges::max_element(f));
     std::vector<double> guess = f;
     for (std::size_t l = 0; l < n; ++l) {
         guess[l] *= 1 + 1e-4 * std::cos(static_cast<double>(l));
@@ -133,8 +133,7 @@ BOOST_AUTO_TEST_CASE(factors_taken_over_from_another_structure_solve_as_well_as_
     const std::array<std::size_t, 4> places{10, 77, 10, 150};
     for (std::size_t k = 0; k < places.size(); ++k) {
         const std::vector<double>& v = inverse.mechanism(static_cast<int>(places[k]));
-        const auto fastest =
-            std::max_element(v.begin(), v.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+        const auto fastest = std::ranges::max_element(v, [](double a, double b) { return std::abs(a) < std::abs(b); });
         contacts[places[k]] = Contact{ContactKind::held, static_cast<int>(fastest - v.begin()), 0};
         for (std::size_t i = 0; i < packing.q.size(); ++i) {
             packing.q[i] += 1e-5 * std::sin(static_cast<double>(i + k));

@@ -2,6 +2,7 @@
 // A free disk that rolls over a fixed one past obstacles: where it meets them is known.
 
 #include "support/crafted.hpp"
+#include "support/free_grains.hpp"
 
 namespace crafted {
 
@@ -14,9 +15,7 @@ struct RollingDisk {
     isostat::Load load;
 
     RollingDisk() {
-        packing.walls = isostat::Walls::none();
-        packing.radius = {1};
-        packing.q = {0, 0, 0, 0};
+        packing = free_grains({1}, {});
         packing.fixed = {1};
         load.disk_force = {0, 0};
         beside(start_angle, 1);

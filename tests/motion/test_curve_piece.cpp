@@ -1,5 +1,6 @@
 // Tubes against a curve that is known: the centre of a unit disk on a fixed one moves on the circle of radius 2.
 #include "contact/separation.hpp"
+#include "core/dot.hpp"
 #include "motion/curve_piece.hpp"
 #include "motion/gap_watch.hpp"
 #include "motion/power_watch.hpp"
@@ -85,10 +86,9 @@ BOOST_AUTO_TEST_CASE(points_are_located_on_their_own_curve_only) {
     const double s = 0.3 * piece.reach();
     std::vector<double> x = piece.point(s);
     x[3] = std::sqrt(4 - x[2] * x[2]);
-    const auto place = piece.locate(x, 1e-15);
-    BOOST_TEST_REQUIRE(place.has_value());
-    BOOST_TEST(std::abs(place->s - s) <= place->slack);
-    BOOST_TEST(place->slack < 1e-12);
+    const auto place = required(piece.locate(x, 1e-15));
+    BOOST_TEST(std::abs(place.s - s) <= place.slack);
+    BOOST_TEST(place.slack < 1e-12);
     x[3] = -x[3]; // on the circle, at the same x, on the other side
     BOOST_TEST(!piece.locate(x, 1e-15).has_value());
     x[3] = -x[3];
@@ -129,7 +129,7 @@ BOOST_AUTO_TEST_CASE(the_constants_of_a_tube_are_those_of_the_statements) {
             }
         }
         const KeptCurve curve(state.packing, state.contacts, slot, 1e-9);
-        within(curve.lipschitz, 2 * std::sqrt(*std::max_element(count.begin(), count.end())) / smallest, 1e-8);
+        within(curve.lipschitz, 2 * std::sqrt(*std::ranges::max_element(count)) / smallest, 1e-8);
         BOOST_TEST(curve.rest_residual == 0); // all of them move
     }
     OnCircle on(0.8, 0);
@@ -182,8 +182,8 @@ BOOST_AUTO_TEST_CASE(the_constants_of_a_curve_in_a_cell_are_those_of_the_stateme
         const auto within = [](double value, double least) {
             BOOST_TEST((value >= least && value <= least * (1 + 1e-6)), value << " against " << least);
         };
-        within(curve.spread, *std::max_element(squares.begin(), squares.end()));
-        within(curve.lipschitz, std::sqrt(*std::max_element(fourths.begin(), fourths.end())));
+        within(curve.spread, *std::ranges::max_element(squares));
+        within(curve.lipschitz, std::sqrt(*std::ranges::max_element(fourths)));
         // No matrix with such rows is larger than norm_of says: here those of the normals at this place.
         std::vector<double> e(state.contacts.size(), 0.0);
         std::vector<double> x(packing.q.size(), 1.0);
@@ -206,13 +206,10 @@ BOOST_AUTO_TEST_CASE(the_constants_of_a_curve_in_a_cell_are_those_of_the_stateme
                     next[static_cast<std::size_t>(g.coordinate[entry])] += e[l] * g.value[entry] * y;
                 }
             }
-            double square = 0;
-            for (const double c : next) {
-                square += c * c;
-            }
-            largest = std::sqrt(std::sqrt(square));
+            const double length = euclidean_norm(next);
+            largest = std::sqrt(length);
             for (double& c : next) {
-                c /= std::sqrt(square);
+                c /= length;
             }
             x = next;
         }
@@ -315,9 +312,7 @@ void to_the_curve(const KeptCurve& curve, const ArcCentre& centre, std::vector<l
             step[l] = static_cast<double>((r[0] * r[0] + r[1] * r[1] - d * d) / (2 * d));
         }
         centre.factorisation().solve_velocities(step);
-        for (std::size_t mu = 0; mu < step.size(); ++mu) {
-            q[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] += step[mu];
-        }
+        dofs.move(q, step);
     }
 }
 
@@ -337,11 +332,7 @@ BOOST_AUTO_TEST_CASE(the_true_curve_of_a_cell_lies_in_the_tube_of_a_shifted_poly
             const KeptCurve curve(state.packing, state.contacts, slot, 0.0);
             CurvePiece piece(curve, *centre, 1);
             BOOST_TEST_REQUIRE(piece.shift().size() == state.packing.q.size());
-            double shift = 0;
-            for (const double x : piece.shift()) {
-                shift += x * x;
-            }
-            shift = std::sqrt(shift);
+            const double shift = euclidean_norm(piece.shift());
             for (const double part : {1.0, 0.05, 1e-7}) {
                 const double h = part * piece.natural_reach();
                 BOOST_TEST_REQUIRE(piece.prove(h));

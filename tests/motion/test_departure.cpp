@@ -34,11 +34,8 @@ struct Start {
 /// By definition.
 std::vector<Contact> candidates_without(const CandidateList& candidates, const std::vector<Contact>& contacts) {
     std::vector<Contact> open;
-    for (const Contact& c : candidates.contacts) {
-        if (std::find(contacts.begin(), contacts.end(), c) == contacts.end()) {
-            open.push_back(c);
-        }
-    }
+    std::ranges::copy_if(candidates.contacts, std::back_inserter(open),
+                         [&](const Contact& c) { return std::ranges::find(contacts, c) == contacts.end(); });
     return open;
 }
 
@@ -143,21 +140,19 @@ BOOST_AUTO_TEST_CASE(an_exchange_does_not_depend_on_the_guess_of_it) {
         const auto exchange = [&](const Packing& at, const Contact& closes, const ExchangedContacts* guess = nullptr) {
             return IsostaticStructure::exchange(start.structure, at, ContactId(slot), closes, guess);
         };
-        const auto plain = exchange(arc.value().end, arc.value().closed);
-        BOOST_TEST_REQUIRE(plain.has_value());
-        BOOST_TEST(!plain->predicted());
+        const auto plain = required(exchange(arc.value().end, arc.value().closed));
+        BOOST_TEST(!plain.predicted());
         // The same exchange nearby, and another one.
         const auto near = exchange(expected->end, arc.value().closed);
         const auto other = exchange(arc.value().end, start.state.contacts[slot]);
         for (const auto* guess : {&near, &other}) {
             BOOST_TEST_REQUIRE(guess->has_value());
-            const auto guessed = exchange(arc.value().end, arc.value().closed, &**guess);
-            BOOST_TEST_REQUIRE(guessed.has_value());
-            BOOST_TEST((guessed->contacts() == plain->contacts()));
-            BOOST_TEST((guessed->matrix().value == plain->matrix().value));
-            BOOST_TEST((guessed->matching() == plain->matching()));
-            BOOST_TEST(guessed->predicted() == (guess == &near));
-            predicted += guessed->predicted() ? 1 : 0;
+            const auto guessed = required(exchange(arc.value().end, arc.value().closed, &**guess));
+            BOOST_TEST((guessed.contacts() == plain.contacts()));
+            BOOST_TEST((guessed.matrix().value == plain.matrix().value));
+            BOOST_TEST((guessed.matching() == plain.matching()));
+            BOOST_TEST(guessed.predicted() == (guess == &near));
+            predicted += guessed.predicted() ? 1 : 0;
         }
     }
     BOOST_TEST(predicted > 10);

@@ -1,9 +1,11 @@
 // Constants of enclosed arcs that are larger for spheres than for disks: what really happens comes near them.
 #include "contact/separation.hpp"
+#include "core/dot.hpp"
 #include "core/roundoff.hpp"
 #include "motion/curve_piece.hpp"
 #include "oracle/random.hpp"
 #include "oracle/truth.hpp"
+#include "support/free_grains.hpp"
 #include "support/spheres.hpp"
 #include "support/test.hpp"
 
@@ -22,15 +24,11 @@ struct RowOfImage {
     Contact pair;
 
     RowOfImage(int dimension, int m, oracle::Random& random) {
-        packing.dimension = packing.cell.dimension = dimension;
-        packing.walls = Walls::none();
-        packing.radius = {1, 1};
+        packing = crafted::free_grains({1, 1}, {}, dimension);
         packing.cell.repeat();
         packing.cell.move(true, true);
         packing.q.resize(packing.coordinate_count());
-        for (double& x : packing.q) {
-            x = random.real(0.5, 1);
-        }
+        std::ranges::generate(packing.q, [&] { return random.real(0.5, 1); });
         snap_to_grid(packing);
         Image image;
         std::fill_n(image.m.begin(), dimension, static_cast<std::int8_t>(m));
@@ -142,13 +140,9 @@ BOOST_AUTO_TEST_CASE(coefficients_in_cells_of_spheres_are_on_a_grid_of_their_own
     const CurvePiece piece(curve, *centre, 1);
     BOOST_TEST(piece.coefficients().size() > 3U);
     for (const std::vector<double>& a : piece.coefficients()) {
-        double largest = 0;
-        for (const double x : a) {
-            largest = std::max(largest, std::abs(x));
-        }
         int exponent = 0;
-        std::frexp(largest, &exponent);
-        BOOST_TEST(std::all_of(a.begin(), a.end(), [exponent](double x) {
+        std::frexp(largest(a), &exponent);
+        BOOST_TEST(std::ranges::all_of(a, [exponent](double x) {
             const double steps = std::ldexp(x, 49 - exponent);
             return steps == std::nearbyint(steps);
         }));
@@ -159,12 +153,9 @@ BOOST_AUTO_TEST_CASE(coefficients_in_cells_of_spheres_are_on_a_grid_of_their_own
 /// sqrt 3.
 BOOST_AUTO_TEST_CASE(the_tube_holds_the_circle_of_a_sphere_in_a_groove) {
     for (const double angle : {0.3, 0.8, 1.2, 2.5}) {
-        Packing packing;
-        packing.dimension = packing.cell.dimension = 3;
-        packing.walls = Walls::none();
-        packing.radius = {1, 1, 1};
+        Packing packing = crafted::free_grains(
+            {1, 1, 1}, {0, 0, -1, 0, 0, 1, std::sqrt(3.0) * std::cos(angle), std::sqrt(3.0) * std::sin(angle)}, 3);
         packing.fixed = {1, 1, 0};
-        packing.q = {0, 0, -1, 0, 0, 1, std::sqrt(3.0) * std::cos(angle), std::sqrt(3.0) * std::sin(angle), 0, 0, 0, 0};
         snap_to_grid(packing);
         const std::vector<Contact> contacts{
             {ContactKind::disk_disk, 0, 2}, {ContactKind::disk_disk, 1, 2}, {ContactKind::held, 6, 0}};

@@ -73,9 +73,8 @@ inline std::vector<std::string> objections(const CertificateClaims& claims, cons
             wrong.push_back(name + " end of the interval is " + text(real.stress));
         }
         // Several forces may vanish there: the contact named is one of theirs.
-        const bool opens = std::any_of(real.opens.begin(), real.opens.end(), [&](int l) {
-            return state.contacts[static_cast<std::size_t>(l)] == claim.opens;
-        });
+        const bool opens = std::ranges::any_of(
+            real.opens, [&](int l) { return state.contacts[static_cast<std::size_t>(l)] == claim.opens; });
         if (!opens) {
             wrong.push_back(name + " end opens another contact than " + to_string(claim.opens));
         }

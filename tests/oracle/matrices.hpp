@@ -38,7 +38,7 @@ sparse::Matrix<Value> compress(const Dense<Value>& dense, int cols, Stored store
 
 inline sparse::Matrix<std::uint64_t> reduce(const sparse::Matrix<double>& matrix) {
     sparse::Matrix<std::uint64_t> reduced{matrix.rows, matrix.cols, matrix.start, matrix.row, {}};
-    std::transform(matrix.value.begin(), matrix.value.end(), std::back_inserter(reduced.value), exact::residue);
+    std::ranges::transform(matrix.value, std::back_inserter(reduced.value), exact::residue);
     return reduced;
 }
 

@@ -51,7 +51,7 @@ inline double lowest_gap(const Packing& near, const std::vector<Reference>& q, c
     double lowest = 1;
     const auto candidates = find_candidates(near, 0.5).contacts;
     for (const Contact& c : candidates) {
-        if (std::find(contacts.begin(), contacts.end(), c) == contacts.end()) {
+        if (std::ranges::find(contacts, c) == contacts.end()) {
             double h = gap(near, c) / near.min_radius();
             if (h < 1e-6) {
                 h = static_cast<double>(equations.value(c)) / near.min_radius();
@@ -105,8 +105,7 @@ inline ReferencePath reference_path(const State& start, int equilibria) {
         ReferenceArc arc;
         arc.start = here;
         arc.contacts = contacts;
-        arc.opened = ContactId(
-            static_cast<std::size_t>(std::find(contacts.begin(), contacts.end(), record.opened) - contacts.begin()));
+        arc.opened = ContactId(static_cast<std::size_t>(std::ranges::find(contacts, record.opened) - contacts.begin()));
         arc.infinitesimal = record.kind == isostat::ArcKind::rattler;
         arc.at_limit = record.kind == isostat::ArcKind::limit;
         arc.load = start.load;
@@ -149,8 +148,8 @@ inline ReferencePath reference_path(const State& start, int equilibria) {
             Load load = arc.load;
             const auto unit = load.unit_force(here);
             const auto fixed = load.fixed_force(here);
-            const auto l = static_cast<std::size_t>(
-                std::find(contacts.begin(), contacts.end(), records.arcs[a + 1].opened) - contacts.begin());
+            const auto l =
+                static_cast<std::size_t>(std::ranges::find(contacts, records.arcs[a + 1].opened) - contacts.begin());
             const LimitReference limit = certified_limit(here, arc.end, certificate, contacts, fixed, unit, l);
             arc.limit = static_cast<int>(path.limits.size());
             arc.equilibrium = equilibrium + 1;

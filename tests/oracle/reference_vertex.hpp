@@ -106,7 +106,7 @@ std::vector<T> opening_velocity(const Packing& packing, const std::vector<T>& q,
     opening[opened] = T(1.0);
     std::vector<T> v = derivative.solve(opening, RefinedMatrix<T>::Of::matrix, corrections).x;
     const T fastest = largest_of(v);
-    std::for_each(v.begin(), v.end(), [&fastest](T& c) { c /= fastest; });
+    std::ranges::for_each(v, [&fastest](T& c) { c /= fastest; });
     return v;
 }
 
@@ -195,7 +195,7 @@ AffineForces<T> affine_forces(const Packing& packing, const std::vector<T>& q, c
     }
     const auto solve = [&](const std::vector<double>& load) { // load = H f = -A^T f
         std::vector<T> minus;
-        std::transform(load.begin(), load.end(), std::back_inserter(minus), [](double f) { return T(-f); });
+        std::ranges::transform(load, std::back_inserter(minus), [](double f) { return T(-f); });
         return derivative.solve(minus, RefinedMatrix<T>::Of::transposed, refinements + 1);
     };
     const auto fixed = solve(fixed_load);

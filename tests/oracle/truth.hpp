@@ -351,7 +351,7 @@ template <class Real> std::vector<Contact> TruthIn<Real>::near_images() const {
             return;
         }
         const double rounded = r.norm() - p.radius[static_cast<std::size_t>(i)] - p.radius[static_cast<std::size_t>(j)];
-        const bool listed = std::find(state_->contacts.begin(), state_->contacts.end(), pair) != state_->contacts.end();
+        const bool listed = std::ranges::find(state_->contacts, pair) != state_->contacts.end();
         smallest = !listed && can_move(pair) ? std::min(smallest, rounded) : smallest;
         found.emplace_back(rounded, pair);
     };
@@ -383,7 +383,7 @@ template <class Real> std::vector<Contact> TruthIn<Real>::near_images() const {
 template <class Real> void TruthIn<Real>::find_other_pairs() {
     const auto& p = state_->packing;
     const auto listed = [this](const Contact& c) {
-        return std::find(state_->contacts.begin(), state_->contacts.end(), c) != state_->contacts.end();
+        return std::ranges::find(state_->contacts, c) != state_->contacts.end();
     };
     const auto add = [&](const Contact& c, bool can_move) {
         if (!listed(c)) {
@@ -408,7 +408,7 @@ template <class Real> void TruthIn<Real>::find_other_pairs() {
     for (const Contact& pair : near_images()) {
         add(pair, can_move(pair));
     }
-    std::sort(others.begin(), others.end(), [](const auto& x, const auto& y) { return x.gap < y.gap; });
+    std::ranges::sort(others, [](const auto& x, const auto& y) { return x.gap < y.gap; });
 }
 
 template <class Real> int TruthIn<Real>::sign(std::size_t contact) const {

@@ -1,5 +1,7 @@
+#include "core/dot.hpp"
 #include "oracle/packings.hpp"
 #include "support/bad_input.hpp"
+#include "support/free_grains.hpp"
 #include "support/scale.hpp"
 #include "support/test.hpp"
 
@@ -57,12 +59,8 @@ BOOST_AUTO_TEST_CASE(snapped_coordinates_are_on_the_grid_and_near_where_they_wer
         snap_to_grid(after);
         const double step = grid_step(before);
         // 2^52 steps cover the largest coordinate, 2^51 do not.
-        double largest = 0;
-        for (const double x : before.q) {
-            largest = std::max(largest, std::abs(x));
-        }
-        BOOST_TEST(std::ldexp(step, 52) >= largest);
-        BOOST_TEST(std::ldexp(step, 51) < largest);
+        BOOST_TEST(std::ldexp(step, 52) >= largest(before.q));
+        BOOST_TEST(std::ldexp(step, 51) < largest(before.q));
         for (std::size_t k = 0; k < before.q.size(); ++k) {
             const double multiple = after.q[k] / step;
             BOOST_TEST(multiple == std::nearbyint(multiple));
@@ -109,9 +107,7 @@ BOOST_AUTO_TEST_CASE(snapping_is_idempotent_and_commutes_with_powers_of_two) {
         }
         // Mirrored: the grid is symmetric.
         Packing mirrored = before;
-        for (double& x : mirrored.q) {
-            x = -x;
-        }
+        std::ranges::transform(mirrored.q, mirrored.q.begin(), std::negate());
         snap_to_grid(mirrored);
         for (std::size_t k = 0; k < once.q.size(); ++k) {
             BOOST_TEST(mirrored.q[k] == -once.q[k]);
@@ -170,11 +166,7 @@ BOOST_AUTO_TEST_CASE(valid_packings_pass) {
 }
 
 BOOST_AUTO_TEST_CASE(a_cell_of_spheres_keeps_its_shape_where_none_touches_itself_along_a_period_at_rest) {
-    Packing packing;
-    packing.dimension = packing.cell.dimension = 3;
-    packing.walls = Walls::none();
-    packing.radius = {1};
-    packing.q = {0, 0, 0, 3, 2.5, 2, 0, 0, 0};
+    Packing packing = crafted::free_grains({1}, {0, 0, 0, 3, 2.5, 2, 0, 0, 0}, 3);
     packing.cell.repeat();
     packing.cell.keep_shape();
     is_valid(packing);
@@ -296,7 +288,7 @@ BOOST_AUTO_TEST_CASE(dead_wall_forces_use_the_reference_lengths) {
     BOOST_REQUIRE(force.size() == 10U);
     BOOST_TEST(force[8] == -2 * 8); // the right wall is as long as the box is high
     BOOST_TEST(force[9] == -3 * 4);
-    BOOST_TEST(std::count(force.begin(), force.end(), 0.0) == 8);
+    BOOST_TEST(std::ranges::count(force, 0.0) == 8);
 }
 
 BOOST_AUTO_TEST_CASE(true_stress_forces_use_the_current_lengths) {

@@ -103,9 +103,7 @@ BOOST_AUTO_TEST_CASE(bootstrap_intervals_cover_about_as_often_as_they_say) {
     constexpr std::size_t samples = 25;
     for (int t = 0; t < trials; ++t) {
         std::vector<double> value(samples);
-        for (double& v : value) {
-            v = random.real() + random.real() + random.real();
-        }
+        std::ranges::generate(value, [&] { return random.real() + random.real() + random.real(); });
         const auto mean = [&](const std::vector<std::vector<std::size_t>>& chosen) {
             double sum = 0;
             for (const std::size_t s : chosen[0]) {

@@ -29,8 +29,8 @@ inline void is_proved_vertex(const State& state, double stress) {
     const Packing& packing = state.packing;
     const auto dofs = static_cast<std::size_t>(2 * packing.disk_count() + 2);
     BOOST_REQUIRE_EQUAL(state.contacts.size(), dofs);
-    BOOST_TEST(std::is_sorted(state.contacts.begin(), state.contacts.end()));
-    BOOST_TEST((std::adjacent_find(state.contacts.begin(), state.contacts.end()) == state.contacts.end()));
+    BOOST_TEST(std::ranges::is_sorted(state.contacts));
+    BOOST_TEST((std::ranges::adjacent_find(state.contacts) == state.contacts.end()));
     BOOST_TEST(state.load.stress[0] == stress);
     BOOST_TEST(state.load.stress[1] == stress);
     BOOST_TEST(state.load.reference_length[0] == packing.length(0));
@@ -44,7 +44,7 @@ inline void is_proved_vertex(const State& state, double stress) {
     double smallest_other = std::numeric_limits<double>::infinity();
     for (const Contact& pair : oracle::all_pairs(packing)) {
         const double h = gap(packing, pair);
-        if (std::binary_search(state.contacts.begin(), state.contacts.end(), pair)) {
+        if (std::ranges::binary_search(state.contacts, pair)) {
             largest = std::max(largest, std::abs(h));
         } else {
             smallest_other = std::min(smallest_other, h);

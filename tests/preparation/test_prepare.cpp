@@ -251,11 +251,7 @@ BOOST_AUTO_TEST_CASE(a_stop_in_any_stage_keeps_the_last_configuration) {
         PreparationOptions options{.disks = 50, .stop = &stop};
         options.progress = [&](const PreparationProgress& p) { stop = stop || p.stage == name; };
         const Outcome outcome = run(options);
-        BOOST_REQUIRE(!outcome.result.ok());
-        BOOST_TEST((outcome.result.failure().kind == FailureKind::interrupted));
-        const std::string word = name == "linear programmes" ? "programme 1" : name;
-        BOOST_TEST(outcome.result.failure().message().find(word) != std::string::npos,
-                   outcome.result.failure().message());
+        fails(outcome.result, FailureKind::interrupted, {name == "linear programmes" ? "programme 1" : name});
         BOOST_REQUIRE(outcome.report.last.has_value());
         BOOST_TEST(outcome.report.last->radius.size() == 50U);
         BOOST_TEST(outcome.report.last->q.size() == 102U);

@@ -18,7 +18,7 @@ DiameterLaw law_of(RadiiLaw kind) {
 /// Kolmogorov's distance between diameters and their distribution function; above 1.95 / sqrt(n) once in a thousand.
 void follows(const DiameterLaw& law, const std::function<double(double)>& distribution) {
     std::vector<double> radii = draw_radii(law, many, 3);
-    std::sort(radii.begin(), radii.end());
+    std::ranges::sort(radii);
     double distance = 0;
     for (int k = 0; k < many; ++k) {
         const double expected = distribution(2 * radii[static_cast<std::size_t>(k)]);

@@ -44,28 +44,17 @@ def names(state):
         yield f"{i}-{j}" + "".join(f"({mx},{my})" for mx, my in image)
 
 
-class Run:
+class Reported:
     """A run, its page in the browser, and what is asked of every page."""
-
-    start, load, ratio, periodic = DATA / "vertex100.txt", "", "σ₂/σ₁", False
 
     @classmethod
     def setUpClass(cls):
         cls.scratch = tempfile.TemporaryDirectory()
-        folder = Path(cls.scratch.name)
-        # A name that would change what the browser takes for a script, were it not written with care.
-        scene = folder / "<!--<script><img src=x onerror=stop()>.toml"
-        shutil.copy(cls.start, folder)
-        scene.write_text(SCENE.format(start=Path(cls.start).name, load=cls.load))
-        cls.out = folder / "run"
-        done = isostat("run", scene, "-o", cls.out, "-q")
-        assert done.returncode == 0, done.stderr
-        done = isostat("report", cls.out, "--html", "--no-charts", "-q")
-        assert done.returncode == 0, done.stderr
-        with open(cls.out / "equilibria.csv") as file:
-            lines = [line.lstrip("# ") for line in file]
-        cls.rows = list(csv.DictReader(lines))
-        cls.events = [json.loads(line) for line in (cls.out / "events.jsonl").read_text().splitlines()]
+        scene = cls.scene(Path(cls.scratch.name))
+        cls.out = scene.parent / "run"
+        for command in (("run", scene, "-o", cls.out, "-q"), ("report", cls.out, "--html", "--no-charts", "-q")):
+            done = isostat(*command)
+            assert done.returncode == 0, done.stderr
         cls.page = cls.out / "figures" / "trajectory.html"
         cls.browser = browser.Browser()
         cls.browser.open(cls.page)
@@ -75,12 +64,45 @@ class Run:
         cls.browser.close()
         cls.scratch.cleanup()
 
+    def tearDown(self):
+        self.assertEqual(self.browser.errors, [])
+
+    def stored(self):
+        """The stored states of equilibria."""
+        return [json.loads(path.read_text()) for path in sorted((self.out / "states").glob("eq_*.json"))]
+
+    def test_asks_for_nothing_but_itself(self):
+        self.assertEqual({a for a in self.browser.addresses if not a.startswith("about:")},
+                         {"file://" + str(self.page)})
+
+
+class Run(Reported):
+    """Of disks: the page shows the records."""
+
+    start, load, ratio, periodic = DATA / "vertex100.txt", "", "σ₂/σ₁", False
+
+    @classmethod
+    def scene(cls, folder):
+        # A name that would change what the browser takes for a script, were it not written with care.
+        scene = folder / "<!--<script><img src=x onerror=stop()>.toml"
+        shutil.copy(cls.start, folder)
+        scene.write_text(SCENE.format(start=Path(cls.start).name, load=cls.load))
+        return scene
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        with open(cls.out / "equilibria.csv") as file:
+            lines = [line.lstrip("# ") for line in file]
+        cls.rows = list(csv.DictReader(lines))
+        cls.events = [json.loads(line) for line in (cls.out / "events.jsonl").read_text().splitlines()]
+
     def setUp(self):
         self.browser.size(1280, 900)
         self.browser.press("Home")
 
     def tearDown(self):
-        self.assertEqual(self.browser.errors, [])
+        super().tearDown()
         self.assertTrue(self.browser.value("document.getElementById('trouble').hidden"))
 
     def at(self, name):
@@ -97,9 +119,7 @@ class Run:
         summary = self.browser.value("document.getElementById('summary').textContent")
         self.assertIn(f"{len(self.rows)} equilibria, {len(self.events)} arcs;", summary)
 
-    def test_asks_for_nothing_but_itself(self):
-        self.assertEqual({a for a in self.browser.addresses if not a.startswith("about:")},
-                         {"file://" + str(self.page)})
+    def test_has_no_address_of_another_place(self):
         self.assertNotRegex(self.page.read_text(), r"https?://")
 
     def test_names_from_files_are_text(self):
@@ -123,8 +143,7 @@ class Run:
                 self.assertIn(contact, here)
 
     def test_packing_is_that_of_the_stored_states(self):
-        for path in sorted((self.out / "states").glob("eq_*.json")):
-            state = json.loads(path.read_text())
+        for state in self.stored():
             q = self.browser.value(f"[...film.positions[film.frameOf.get({state['equilibrium']})]]")
             mean = sum(disk[2] for disk in state["disks"]) / len(state["disks"])
             for i, (x, y, _) in enumerate(state["disks"]):
@@ -132,8 +151,7 @@ class Run:
                 self.assertLess(abs(q[2 * i + 1] - y), mean / 500)
 
     def test_contacts_forces_and_rattlers_are_those_of_the_stored_states(self):
-        for path in sorted((self.out / "states").glob("eq_*.json")):
-            state = json.loads(path.read_text())
+        for state in self.stored():
             number = state["equilibrium"]
             shown = self.browser.value(f"pairs(contactsOf({number})).map(pairOf).map(contactName)")
             known = dict(zip(names(state), state["forces"]))
@@ -261,31 +279,15 @@ class Page(Run, unittest.TestCase):
                 (PICTURES / f"page-{width}.png").write_bytes(base64.b64decode(self.browser.picture()))
 
 
-class Spheres(unittest.TestCase):
-    """The page of a run of spheres in a cell, whose view turns."""
+class Spheres(Reported, unittest.TestCase):
+    """Of spheres in a cell, whose view turns."""
 
     @classmethod
-    def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        folder = Path(cls.scratch.name)
+    def scene(cls, folder):
         scene = folder / "s.toml"
         scene.write_text('[packing]\nspheres = 12\nseed = 3\n\n[cell]\nkind = "orthorhombic"\n[output]\npictures = false\n'
                          '[[programme]]\ndo = "up"\nequilibria = 2\nname = "<b>@DATA@"\n')
-        cls.out = folder / "run"
-        for command in (("run", scene, "-o", cls.out, "-q"), ("report", cls.out, "--html", "--no-charts", "-q")):
-            done = isostat(*command)
-            assert done.returncode == 0, done.stderr
-        cls.page = cls.out / "figures" / "trajectory.html"
-        cls.browser = browser.Browser()
-        cls.browser.open(cls.page)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-        cls.scratch.cleanup()
-
-    def tearDown(self):
-        self.assertEqual(self.browser.errors, [])
+        return scene
 
     def drawn(self):
         """Spheres and lines drawn, the two angles of the view."""
@@ -304,24 +306,16 @@ class Spheres(unittest.TestCase):
         return self.browser.value("pen.getImageData(0, 0, canvas.width, canvas.height).data"
                                   ".reduce((n, x, k) => n + (k % 4 == 3 && x > 0), 0)")
 
-    def test_asks_for_nothing_but_itself(self):
-        self.assertEqual({a for a in self.browser.addresses if not a.startswith("about:")},
-                         {"file://" + str(self.page)})
-
     def test_names_from_files_are_text(self):
         self.assertIn("<title>&lt;b&gt;@DATA@</title>", self.page.read_text())
         self.assertEqual(self.browser.value("document.querySelectorAll('b').length"), 0)
 
     def test_draws_the_spheres_contacts_and_forces_of_the_stored_states(self):
-        stored = {}
-        for path in sorted((self.out / "states").glob("eq_*.json")):
-            state = json.loads(path.read_text())
-            stored[state["equilibrium"]] = state
-        for k, (number, state) in enumerate(sorted(stored.items())):
+        for k, state in enumerate(sorted(self.stored(), key=lambda state: state["equilibrium"])):
             self.put("which", k)
-            contacts = [c for c in state["contacts"]]
+            contacts = state["contacts"]
             self.assertEqual(self.drawn()[0], len(state["disks"]) + len(contacts))
-            self.assertIn(f"Equilibrium {number}: {len(state['disks'])} spheres",
+            self.assertIn(f"Equilibrium {state['equilibrium']}: {len(state['disks'])} spheres",
                           self.browser.value("document.getElementById('what').textContent"))
             lines = self.browser.value(f"states[{k}].lines")
             forces = state["forces"]

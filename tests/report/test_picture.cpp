@@ -4,16 +4,9 @@
 #include "support/scratch.hpp"
 
 using namespace isostat;
+using scratch::count;
 
 namespace {
-
-int count(const std::string& text, const std::string& what) {
-    int n = 0;
-    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
-        ++n;
-    }
-    return n;
-}
 
 /// Widths of the lines of a class, in order.
 std::vector<double> widths(const std::string& svg, const std::string& style) {

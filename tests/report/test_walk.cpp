@@ -52,8 +52,7 @@ const std::vector<EquilibriumRow> rows{row(0, -1, 0, 1.0, 0.0, 0),    row(1, 0, 
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(a_walk_along_the_records_passes_through_every_stored_state) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_walk_along_the_records_passes_through_every_stored_state, scratch::InFolder) {
     make_run(folder, scratch::data("vertex100.txt"));
     const checker::RunRecords records = records_of(folder / "run");
     int equilibria = 0;
@@ -81,8 +80,7 @@ BOOST_AUTO_TEST_CASE(a_walk_along_the_records_passes_through_every_stored_state)
     BOOST_TEST(relisted == 1); // the others were reached along arcs
 }
 
-BOOST_AUTO_TEST_CASE(what_cannot_be_followed_is_left_out_up_to_the_next_stored_state) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(what_cannot_be_followed_is_left_out_up_to_the_next_stored_state, scratch::InFolder) {
     make_run(folder, scratch::data("vertex100.txt"));
     checker::RunRecords records = records_of(folder / "run");
     const auto broken = std::find_if(records.events.begin(), records.events.end(),
@@ -117,8 +115,7 @@ BOOST_AUTO_TEST_CASE(a_walk_holds_and_releases_coordinates) {
     BOOST_TEST(held == 2); // after the turn, and after the arc between turn and release
 }
 
-BOOST_AUTO_TEST_CASE(the_page_of_a_run_that_was_killed_has_what_was_recorded) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(the_page_of_a_run_that_was_killed_has_what_was_recorded, scratch::InFolder) {
     make_run(folder, scratch::data("vertex100.txt"));
     const std::string whole = run_page(folder / "run", {}).html;
     BOOST_TEST(contains(whole, "completed"));
@@ -131,8 +128,7 @@ BOOST_AUTO_TEST_CASE(the_page_of_a_run_that_was_killed_has_what_was_recorded) {
     BOOST_TEST(page.html == scratch::replaced(whole, "\"status\":\"completed\"", "\"status\":\"running\""));
 }
 
-BOOST_AUTO_TEST_CASE(the_page_of_a_run_in_a_cell_has_its_packing_its_images_and_its_arcs) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(the_page_of_a_run_in_a_cell_has_its_packing_its_images_and_its_arcs, scratch::InFolder) {
     make_run(folder, scratch::data("cells/rect_16.json"), "1.4");
     const Page page = run_page(folder / "run", {});
     BOOST_TEST(page.left_out.empty());
@@ -146,8 +142,7 @@ BOOST_AUTO_TEST_CASE(the_page_of_a_run_in_a_cell_has_its_packing_its_images_and_
     BOOST_TEST(contains(bare.left_out[0], "eq_000000.json is not there"));
 }
 
-BOOST_AUTO_TEST_CASE(the_page_of_a_run_without_an_equilibrium_says_so) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(the_page_of_a_run_without_an_equilibrium_says_so, scratch::InFolder) {
     make_run(folder, scratch::data("vertex100.txt"));
     scratch::write(folder / "run/events.jsonl", "");
     const std::string rows = scratch::read(folder / "run/equilibria.csv");
@@ -156,8 +151,7 @@ BOOST_AUTO_TEST_CASE(the_page_of_a_run_without_an_equilibrium_says_so) {
     BOOST_TEST(contains(run_page(folder / "run", {}).html, "\"number\":[]"));
 }
 
-BOOST_AUTO_TEST_CASE(no_name_can_end_the_script_that_holds_the_data) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(no_name_can_end_the_script_that_holds_the_data, scratch::InFolder) {
     make_run(folder, scratch::data("vertex100.txt"));
     const std::string header = scratch::read(folder / "run/run.json");
     scratch::write(folder / "run/run.json",
@@ -183,8 +177,7 @@ BOOST_AUTO_TEST_CASE(integers_take_a_byte_when_they_are_small) {
 }
 
 /// A ParaView file has members as points with radii, the picture the arcs.
-BOOST_AUTO_TEST_CASE(a_report_draws_bodies_bounded_by_arcs_and_writes_no_disks_of_them) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_report_draws_bodies_bounded_by_arcs_and_writes_no_disks_of_them, scratch::InFolder) {
     scratch::write(folder / "oval.json", state_text(isostat::test::oval_in_a_box(1, 1)));
     const auto drawn = [&](std::vector<std::string> extra) {
         std::vector<std::string> words{"report", folder.at("oval.json"), "-o", folder.at("pictures")};

@@ -44,7 +44,7 @@ BOOST_AUTO_TEST_CASE(entries_follow_from_the_contacts_not_from_the_stored_coordi
 BOOST_AUTO_TEST_CASE(what_vanishes_is_told_by_indices_and_by_equal_radii_on_one_wall) {
     // In the order left-0, bottom-0, 0-1, bottom-1, right-1, top-0 of the sorted list: found by contact.
     const auto bottom_of_second = [](const State& state, bool perturbed) {
-        const auto found = std::find(state.contacts.begin(), state.contacts.end(), bottom(1));
+        const auto found = std::ranges::find(state.contacts, bottom(1));
         return carrying(state, perturbed)[static_cast<std::size_t>(found - state.contacts.begin())] != 0;
     };
     // Equal radii: the pair is level at every true vertex, and the right wall presses on the left one alone.
@@ -60,9 +60,9 @@ BOOST_AUTO_TEST_CASE(an_ordering_is_made_once_for_all_copies_whatever_thread_ask
     const State state = prepared(30, 3);
     const auto proved = crafted::Regular::proved(state);
     for (int round = 0; round < 20; ++round) {
-        const auto contacts = IsostaticStructure::exchange(proved, state.packing, ContactId(0), state.contacts[0]);
-        BOOST_TEST_REQUIRE(contacts.has_value());
-        const auto structure = IsostaticStructure::without_proof(*contacts);
+        const auto contacts =
+            required(IsostaticStructure::exchange(proved, state.packing, ContactId(0), state.contacts[0]));
+        const auto structure = IsostaticStructure::without_proof(contacts);
         constexpr std::size_t askers = 4;
         std::vector<const sparse::Ordering*> found(askers);
         std::barrier together(askers);

@@ -90,8 +90,7 @@ BOOST_AUTO_TEST_CASE(a_missing_seed_is_added) {
     refused("packing = {disks = 3}", 4, "seed");
 }
 
-BOOST_AUTO_TEST_CASE(a_list_of_radii_stands_in_the_scene_of_a_sample) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(a_list_of_radii_stands_in_the_scene_of_a_sample, scratch::InFolder) {
     scratch::write(folder / "radii.txt", "1\n2.5\n");
     const std::string text = "[packing]\nradii_file = \"radii.txt\"\nseed = 3\n";
     const std::string expected = "[packing]\nradii = [1, 2.5]\nseed = 5\n";

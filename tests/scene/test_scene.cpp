@@ -231,8 +231,7 @@ BOOST_AUTO_TEST_CASE(a_law_has_its_own_keys_and_no_others) {
     refuses_scene("[packing]\nfile = \"v\"\nratio = 2\n", {"s.toml:3:", "'ratio'", "'file'"});
 }
 
-BOOST_AUTO_TEST_CASE(radii_come_from_a_list_or_a_file) {
-    const scratch::Folder folder;
+BOOST_FIXTURE_TEST_CASE(radii_come_from_a_list_or_a_file, scratch::InFolder) {
     scratch::write(folder / "r.txt", "# radii\n1\n\n0x2\n");
     BOOST_TEST((parse_scene_text("[packing]\nradii = [1, 2.5]\n").preparation.radii == std::vector<double>{1, 2.5}));
     const std::string text = "[packing]\nradii_file = \"r.txt\"\n";

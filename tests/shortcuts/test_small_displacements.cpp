@@ -15,12 +15,10 @@ namespace {
 LinearEvent event_of(const State& state, const Contact& opened) {
     const auto structure = crafted::Regular::proved(state);
     const Factorisation factorisation(structure);
-    const auto at = std::find(state.contacts.begin(), state.contacts.end(), opened) - state.contacts.begin();
+    const auto at = std::ranges::find(state.contacts, opened) - state.contacts.begin();
     const auto pairs = find_candidates(state.packing, 0.8).contacts;
-    const auto event =
-        find_linear_event(state.packing, structure, factorisation, ContactId(static_cast<int>(at)), +1, pairs);
-    BOOST_REQUIRE(event.ok());
-    return event.value();
+    return required(
+        find_linear_event(state.packing, structure, factorisation, ContactId(static_cast<int>(at)), +1, pairs));
 }
 
 std::vector<Reference> lifted(const std::vector<double>& q) {
@@ -83,7 +81,7 @@ BOOST_AUTO_TEST_CASE(a_frozen_geometry_keeps_its_linear_gaps_closed_and_the_load
         std::vector<Contact> contacts = start.contacts;
         std::vector<double> before = start.packing.q;
         for (std::size_t a = 0; a < run.arcs.size(); ++a, ++arcs) {
-            *std::find(contacts.begin(), contacts.end(), run.arcs[a].opened) = run.arcs[a].closed;
+            *std::ranges::find(contacts, run.arcs[a].opened) = run.arcs[a].closed;
             const std::vector<double>& q = run.coordinates[a];
             for (const Contact& c : contacts) {
                 const auto g = gap_gradient(start.packing, c);

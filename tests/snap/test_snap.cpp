@@ -77,11 +77,10 @@ BOOST_AUTO_TEST_CASE(soft_spheres_snap_to_their_vertex_in_walls_slabs_and_cells)
         BOOST_TEST(way > 1e-8);
         const double mean = compare::mean_force(forces);
         BOOST_TEST(compare::split_forces(soft, forces, mean, found).rest < 1e-8);
-        const auto state = compare::with_resting_rattlers(found, 3);
-        BOOST_TEST_REQUIRE(state.ok(), (state.ok() ? "" : state.failure().message(3)));
-        const Certification truth = certify(state.value());
+        const auto state = required(compare::with_resting_rattlers(found, 3));
+        const Certification truth = certify(state);
         BOOST_TEST((truth.verdict == Verdict::proved));
-        BOOST_TEST((compare::carrying(state.value(), truth) == sample.list));
+        BOOST_TEST((compare::carrying(state, truth) == sample.list));
         // A contact less holds nothing; one more is too many; beyond the interval a force has the other sign.
         SoftState wrong = soft;
         wrong.contacts.erase(wrong.contacts.begin() + 5);
@@ -101,15 +100,13 @@ BOOST_AUTO_TEST_CASE(a_sphere_among_its_like_on_a_wall_is_held_by_a_contact_with
             radius *= swollen;
         }
         BOOST_TEST(soft.contacts.size() == 261U);
-        BOOST_TEST(std::count(soft.contacts.begin(), soft.contacts.end(), Contact(ContactKind::lower_wall, 12, 2)) ==
-                   1);
+        BOOST_TEST(std::ranges::count(soft.contacts, Contact(ContactKind::lower_wall, 12, 2)) == 1);
         const Snap found = compare::snap(soft);
         BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
         BOOST_TEST(found.rattlers.size() == 14U);
         BOOST_TEST(compare::carrying(found).size() == 260U);
-        const auto state = compare::with_resting_rattlers(found, 3);
-        BOOST_TEST_REQUIRE(state.ok(), (state.ok() ? "" : state.failure().message(3)));
-        BOOST_TEST((certify(state.value()).verdict == Verdict::proved));
+        const auto state = required(compare::with_resting_rattlers(found, 3));
+        BOOST_TEST((certify(state).verdict == Verdict::proved));
     }
 }
 
@@ -140,12 +137,11 @@ BOOST_AUTO_TEST_CASE(rattlers_come_to_rest_and_the_state_is_an_equilibrium_with_
     const Sample sample;
     const Snap found = compare::snap(sample.soft(1e6));
     BOOST_TEST_REQUIRE(!found.rattlers.empty());
-    const auto state = compare::with_resting_rattlers(found, 3);
-    BOOST_TEST_REQUIRE(state.ok(), (state.ok() ? "" : state.failure().message()));
-    BOOST_TEST(state.value().contacts.size() == 202U);
-    const Certification truth = certify(state.value());
+    const auto state = required(compare::with_resting_rattlers(found, 3));
+    BOOST_TEST(state.contacts.size() == 202U);
+    const Certification truth = certify(state);
     BOOST_TEST((truth.verdict == Verdict::proved));
-    BOOST_TEST((compare::carrying(state.value(), truth) == sample.list));
+    BOOST_TEST((compare::carrying(state, truth) == sample.list));
 }
 
 BOOST_AUTO_TEST_CASE(frames_of_a_periodic_cell_or_a_channel_snap_to_their_vertex) {
@@ -156,11 +152,10 @@ BOOST_AUTO_TEST_CASE(frames_of_a_periodic_cell_or_a_channel_snap_to_their_vertex
             const SoftState soft = sample.soft(stiffness);
             const Snap found = compare::snap(soft);
             BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
-            const auto state = compare::with_resting_rattlers(found, 3);
-            BOOST_TEST_REQUIRE(state.ok(), (state.ok() ? "" : state.failure().message()));
-            const Certification truth = certify(state.value());
+            const auto state = required(compare::with_resting_rattlers(found, 3));
+            const Certification truth = certify(state);
             BOOST_TEST((truth.verdict == Verdict::proved));
-            BOOST_TEST((compare::carrying(state.value(), truth) == sample.list));
+            BOOST_TEST((compare::carrying(state, truth) == sample.list));
             for (std::size_t k = 32; k < soft.packing.q.size(); ++k) { // the cell of the sample
                 BOOST_TEST(std::abs(found.packing.q[k] - sample.state.packing.q[k]) < 1e-9);
                 BOOST_TEST(found.walls >= std::abs(soft.packing.q[k] - found.packing.q[k]));
@@ -264,7 +259,7 @@ BOOST_AUTO_TEST_CASE(lists_without_a_vertex_are_refused_with_the_reason) {
     near.i = exact.disks[static_cast<std::size_t>(near.i)];
     near.j = near.kind == ContactKind::disk_disk ? exact.disks[static_cast<std::size_t>(near.j)] : near.j;
     soft.contacts.push_back(near);
-    std::sort(soft.contacts.begin(), soft.contacts.end());
+    std::ranges::sort(soft.contacts);
     const Snap more = compare::snap(soft);
     BOOST_TEST((more.outcome == SnapOutcome::hyperstatic));
     BOOST_TEST(more.reason.find("h = 1") != std::string::npos, more.reason);
@@ -300,7 +295,7 @@ BOOST_AUTO_TEST_CASE(a_rattler_without_room_is_no_vertex) {
         }
         BOOST_TEST((outcomes.front() == SnapOutcome::vertex));
         BOOST_TEST((outcomes.back() == SnapOutcome::refuted));
-        BOOST_TEST(std::is_sorted(outcomes.begin(), outcomes.end(), [](SnapOutcome a, SnapOutcome b) {
+        BOOST_TEST(std::ranges::is_sorted(outcomes, [](SnapOutcome a, SnapOutcome b) {
             return a == SnapOutcome::vertex &&
                    b == SnapOutcome::refuted; // once there is no room, there is none for more
         }));
@@ -320,10 +315,8 @@ BOOST_AUTO_TEST_CASE(soft_limits_approach_the_exact_one_as_one_over_the_stiffnes
         BOOST_TEST_REQUIRE((hard && soft));
         BOOST_TEST((soft->stress - exact.end()) / (hard->stress - exact.end()) == 10.0,
                    boost::test_tools::tolerance(0.1));
-        const auto needed = compare::stiffness_needed(sample.backbone, exact);
-        BOOST_TEST_REQUIRE(needed.has_value());
-        const auto there = compare::soft_limit(sample.backbone, exact, *needed);
-        BOOST_TEST_REQUIRE(there.has_value());
-        BOOST_TEST(std::abs(there->stress - exact.end()) / exact.end() == 1e-3, boost::test_tools::tolerance(0.3));
+        const auto needed = required(compare::stiffness_needed(sample.backbone, exact));
+        const auto there = required(compare::soft_limit(sample.backbone, exact, needed));
+        BOOST_TEST(std::abs(there.stress - exact.end()) / exact.end() == 1e-3, boost::test_tools::tolerance(0.3));
     }
 }

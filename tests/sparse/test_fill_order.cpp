@@ -68,17 +68,14 @@ sparse::Matrix<std::uint64_t> random_values(const Dense<char>& pattern, Random& 
     const int n = static_cast<int>(pattern.size());
     Dense<std::uint64_t> dense(pattern.size(), std::vector<std::uint64_t>(pattern.size()));
     for (auto& row : dense) {
-        for (std::uint64_t& x : row) {
-            x = 1 + random.bits() % (exact::mersenne61 - 1);
-        }
+        std::ranges::generate(row, [&] { return 1 + random.bits() % (exact::mersenne61 - 1); });
     }
     return compress(dense, n, [&](std::size_t i, std::size_t j) { return pattern[i][j] != 0; });
 }
 
 bool is_permutation_of_all(const std::vector<int>& order, int n) {
     return std::set<int>(order.begin(), order.end()).size() == order.size() && static_cast<int>(order.size()) == n &&
-           (n == 0 || (*std::min_element(order.begin(), order.end()) == 0 &&
-                       *std::max_element(order.begin(), order.end()) == n - 1));
+           (n == 0 || (*std::ranges::min_element(order) == 0 && *std::ranges::max_element(order) == n - 1));
 }
 
 } // namespace
@@ -227,7 +224,7 @@ BOOST_AUTO_TEST_CASE(no_load_means_no_structural_nonzero) {
     const auto matrix = random_values(random_pattern(10, 10, 30, true, random), random);
     const auto nonzero =
         sparse::structural_nonzeros(matrix.start, matrix.row, sparse::Ordering(matrix), std::vector<int>{});
-    BOOST_TEST(std::count(nonzero.begin(), nonzero.end(), 0) == 10);
+    BOOST_TEST(std::ranges::count(nonzero, 0) == 10);
 }
 
 BOOST_AUTO_TEST_CASE(a_repaired_matching_is_perfect_exactly_when_there_is_one) {

@@ -62,7 +62,7 @@ Path simplex(const LinearPacking& p, std::vector<int> basis, const VectorXd& u0,
         double step = std::numeric_limits<double>::infinity();
         int closes = -1;
         for (Eigen::Index l = 0; l < rate.size(); ++l) {
-            const bool kept = std::find(path.basis.begin(), path.basis.end(), static_cast<int>(l)) != path.basis.end();
+            const bool kept = std::ranges::find(path.basis, static_cast<int>(l)) != path.basis.end();
             if (!kept && rate[l] > 1e-12 && gaps[l] / rate[l] < step) {
                 step = gaps[l] / rate[l];
                 closes = static_cast<int>(l);
@@ -75,7 +75,7 @@ Path simplex(const LinearPacking& p, std::vector<int> basis, const VectorXd& u0,
         path.least_gain = std::min(path.least_gain, -force[open] * step);
         path.basis[static_cast<std::size_t>(open)] = closes;
     }
-    std::sort(path.basis.begin(), path.basis.end());
+    std::ranges::sort(path.basis);
     return path;
 }
 
@@ -91,7 +91,7 @@ LinearPacking linearised(const State& state) {
         for (int e = h.start[c]; e < h.start[c + 1]; ++e) {
             p.approach(l, h.row[static_cast<std::size_t>(e)]) = h.value[static_cast<std::size_t>(e)];
         }
-        const bool contact = std::find(state.contacts.begin(), state.contacts.end(), pairs[c]) != state.contacts.end();
+        const bool contact = std::ranges::find(state.contacts, pairs[c]) != state.contacts.end();
         p.gap[l] = contact ? 0.0 : gap(state.packing, pairs[c]);
         if (contact) {
             p.start.push_back(l);

@@ -24,9 +24,7 @@ NumberMatrix random_matrix(int rows, int cols, int inner, std::mt19937_64& rando
                                          std::vector<long>(static_cast<std::size_t>(cols)));
     for (auto* factor : {&left, &right}) {
         for (auto& row : *factor) {
-            for (long& x : row) {
-                x = random() % 3 == 0 ? static_cast<long>(random() % 7) - 3 : 0;
-            }
+            std::ranges::generate(row, [&] { return random() % 3 == 0 ? static_cast<long>(random() % 7) - 3 : 0; });
         }
     }
     NumberMatrix matrix;

@@ -101,11 +101,8 @@ ExactCell strip_of_triangles(int columns, int rows) {
     auto& packing = cell.state.packing;
     const int n = columns * rows;
     std::vector<Contact> kept;
-    for (const Contact& c : cell.state.contacts) {
-        if (c.image.m[1] == 0 && c.j < n && c.i < n) {
-            kept.push_back(c);
-        }
-    }
+    std::ranges::copy_if(cell.state.contacts, std::back_inserter(kept),
+                         [n](const Contact& c) { return c.image.m[1] == 0 && c.j < n && c.i < n; });
     const double tilts = packing.q.back(), period = packing.length(0);
     packing.radius.resize(static_cast<std::size_t>(n));
     packing.q.resize(2 * static_cast<std::size_t>(n));
@@ -173,7 +170,7 @@ BOOST_AUTO_TEST_CASE(angles_tell_radii_of_which_inversive_distances_are_given) {
             square[k] = a * a + b * b + 2 * inversive[k] * a * b;
         }
         const std::array<double, 3> side{std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2])};
-        if (2 * *std::max_element(side.begin(), side.end()) > 0.999 * (side[0] + side[1] + side[2])) {
+        if (2 * *std::ranges::max_element(side) > 0.999 * (side[0] + side[1] + side[2])) {
             continue;
         }
         ++triangles;
@@ -193,7 +190,7 @@ BOOST_AUTO_TEST_CASE(angles_tell_radii_of_which_inversive_distances_are_given) {
         const double pairs = weight[0] * weight[1] + weight[1] * weight[2] + weight[2] * weight[0];
         BOOST_TEST_REQUIRE(pairs > -1e-9);
         BOOST_TEST_REQUIRE(weight[0] + weight[1] + weight[2] > 0);
-        outside += *std::min_element(weight.begin(), weight.end()) < 0 ? 1 : 0;
+        outside += *std::ranges::min_element(weight) < 0 ? 1 : 0;
     }
     BOOST_TEST(outside > 1000); // the radical centre need not be in the triangle
 }

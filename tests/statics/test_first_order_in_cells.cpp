@@ -3,6 +3,7 @@
 #include "checker/first_order.hpp"
 #include "support/course.hpp"
 #include "support/mirror_cells.hpp"
+#include "support/newton.hpp"
 #include "support/regular.hpp"
 #include "support/scratch.hpp"
 #include "verified/first_order.hpp"
@@ -21,16 +22,10 @@ constexpr double step = 1e-4;
 Packing with_gaps(const State& state, const std::vector<double>& radius, std::size_t opened, double gap_of_it) {
     Packing packing = state.packing;
     packing.radius = radius;
+    std::vector<double> gaps(state.contacts.size(), 0);
+    gaps[opened] = gap_of_it;
     for (int newton = 0; newton < 8; ++newton) {
-        const auto structure = IsostaticStructure::prove(packing, state.contacts).value();
-        std::vector<double> v;
-        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-            v.push_back(gap(packing, state.contacts[l]) - (l == opened ? gap_of_it : 0));
-        }
-        Factorisation(structure).solve_velocities(v);
-        for (std::size_t mu = 0; mu < v.size(); ++mu) {
-            packing.q[static_cast<std::size_t>(structure.dofs().coordinate_of(static_cast<int>(mu)))] += v[mu];
-        }
+        step_to_gaps(packing, state.contacts, gaps);
     }
     return packing;
 }

@@ -5,21 +5,9 @@ using namespace isostat;
 using namespace ::crafted;
 using families::stack;
 
-namespace {
-
-/// The reason why there is no answer, for messages.
-template <class T> std::string reason(const Result<T>& result) {
-    return result.ok() ? "answered" : result.failure().message();
-}
-
-} // namespace
-
 BOOST_AUTO_TEST_CASE(an_exact_tie_of_two_tractions_is_named) {
     AtVertex tie(stack(2, 1, 0));
-    const auto decision = decide_opening(tie.statics, 1, OpeningRule::most_negative, {}, 0);
-    BOOST_TEST_REQUIRE(!decision.ok());
-    BOOST_TEST((decision.failure().kind == FailureKind::tie));
-    BOOST_TEST(decision.failure().message().find("exactly equal") != std::string::npos, reason(decision));
+    fails(decide_opening(tie.statics, 1, OpeningRule::most_negative, {}, 0), FailureKind::tie, {"exactly equal"});
     BOOST_TEST((tie.statics.rung() == Rung::exact));
 }
 
@@ -39,17 +27,13 @@ BOOST_AUTO_TEST_CASE(a_force_within_delta_of_zero_has_its_sign_and_an_exact_zero
             if (rounded == 0.5) { // delta is lost in the load itself: it is added to another disk instead
                 continue;
             }
-            const auto decision = decide_opening(loaded.statics, 1, OpeningRule::most_negative, {}, 0);
-            BOOST_TEST_REQUIRE(decision.ok(), reason(decision));
-            BOOST_TEST(decision.value().opening.has_value() == (sign < 0));
+            const auto decision = required(decide_opening(loaded.statics, 1, OpeningRule::most_negative, {}, 0));
+            BOOST_TEST(decision.opening.has_value() == (sign < 0));
         }
     }
     AtVertex zero(stack(0.5, -1, 0.5));
-    const auto decision = decide_opening(zero.statics, 1, OpeningRule::most_negative, {}, 0);
-    BOOST_TEST_REQUIRE(!decision.ok());
-    BOOST_TEST((decision.failure().kind == FailureKind::tie));
-    BOOST_TEST(decision.failure().message().find("exactly 0") != std::string::npos, reason(decision));
-    BOOST_TEST(decision.failure().message().find("0-bottom") != std::string::npos, reason(decision));
+    fails(decide_opening(zero.statics, 1, OpeningRule::most_negative, {}, 0), FailureKind::tie,
+          {"exactly 0", "0-bottom"});
 }
 
 BOOST_AUTO_TEST_CASE(equal_by_symmetry_is_a_tie_however_the_coordinates_were_rounded) {
@@ -63,11 +47,8 @@ BOOST_AUTO_TEST_CASE(equal_by_symmetry_is_a_tie_however_the_coordinates_were_rou
         AtVertex stored(state, false, options);
         misled += decide_opening(stored.statics, -1, OpeningRule::most_negative, {}, 0).ok() ? 1 : 0;
         AtVertex truth(state, true, options);
-        const auto decision = decide_opening(truth.statics, -1, OpeningRule::most_negative, {}, 0);
-        BOOST_TEST_REQUIRE(!decision.ok(), "radius " << r);
-        BOOST_TEST((decision.failure().kind == FailureKind::tie), reason(decision));
-        BOOST_TEST(decision.failure().message().find("0-2") != std::string::npos, reason(decision));
-        BOOST_TEST(decision.failure().message().find("1-2") != std::string::npos, reason(decision));
+        BOOST_TEST_INFO_SCOPE("radius " << r);
+        fails(decide_opening(truth.statics, -1, OpeningRule::most_negative, {}, 0), FailureKind::tie, {"0-2", "1-2"});
     }
     BOOST_TEST(misled > 0); // otherwise this says nothing
 }

@@ -213,7 +213,7 @@ inline State dimer_that_leans_along_one_period() {
     State state = dimer_in_a_cell(0, 1, 1, R"("y")");
     state.load.disk_force = {-2, -3.75, 2, 3.75};
     state.packing.length(0) = 7.5;
-    state.contacts.erase(std::find(state.contacts.begin(), state.contacts.end(), pair_of(0, 1, {{-1, 0, 0}})));
+    state.contacts.erase(std::ranges::find(state.contacts, pair_of(0, 1, {{-1, 0, 0}})));
     return state;
 }
 

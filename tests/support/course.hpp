@@ -64,7 +64,7 @@ inline bool mentions(const Course& course, const std::string& word) {
 
 inline bool settled_as(const Course& course, const std::string& what) {
     const std::vector<TieDecision> ties = course.ties();
-    return std::any_of(ties.begin(), ties.end(), [&](const TieDecision& tie) { return tie.what == what; });
+    return std::ranges::any_of(ties, [&](const TieDecision& tie) { return tie.what == what; });
 }
 
 } // namespace crafted

@@ -34,6 +34,14 @@ struct DiskAt {
     double radius, x, y;
 };
 
+/// Every coordinate changed by up to `size`.
+inline State pushed(State state, double size) {
+    for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
+        state.packing.q[k] += size * std::sin(7.0 * static_cast<double>(k));
+    }
+    return state;
+}
+
 /// A state in the box [0, lx] x [0, ly] under wall forces f1, f2.
 inline State in_box(const std::vector<DiskAt>& disks, double lx, double ly, double f1, double f2,
                     std::vector<Contact> contacts) {

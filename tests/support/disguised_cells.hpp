@@ -25,23 +25,11 @@ inline Disguised shifted(const State& start, const std::vector<Image>& shift) {
 
 /// Disks in the opposite order.
 inline Disguised reversed(const State& start) {
-    State state = start;
-    const int n = start.packing.disk_count();
-    for (int i = 0; i < n; ++i) {
-        const auto to = static_cast<std::size_t>(n - 1 - i);
-        const auto from = static_cast<std::size_t>(i);
-        state.packing.radius[to] = start.packing.radius[from];
-        for (std::size_t a = 0; a < 2; ++a) {
-            state.packing.q[2 * to + a] = start.packing.q[2 * from + a];
-            state.load.infinitesimal[2 * to + a] = start.load.infinitesimal[2 * from + a];
-        }
-    }
-    state.packing.cell.pin = n - 1 - start.packing.cell.pin;
-    const auto rename = [n](const Contact& c) {
-        return c.kind == isostat::ContactKind::disk_disk ? isostat::pair_of(n - 1 - c.i, n - 1 - c.j, c.image)
-                                                         : Contact{c.kind, n - 1 - c.i, c.j};
-    };
-    return ::crafted::disguised(std::move(state), rename, rename);
+    std::vector<int> label(start.packing.radius.size());
+    std::iota(label.rbegin(), label.rend(), 0);
+    Disguised other = ::crafted::with_labels(start, label);
+    other.state.packing.cell.pin = start.packing.disk_count() - 1 - start.packing.cell.pin;
+    return other;
 }
 
 /// x and y exchanged. \pre no tilt

@@ -179,9 +179,7 @@ inline Answer which_is_closed(const ExactPacking& there, const Contact& first, c
         const bool named = contacts.failure().message().find(to_string(second)) != std::string::npos;
         return {named ? -1 : 0, named ? Rung::exact : Rung::none, 0, infinity, contacts.failure().message()};
     }
-    const auto has = [&](const Contact& c) {
-        return std::find(contacts.value().begin(), contacts.value().end(), c) != contacts.value().end();
-    };
+    const auto has = [&](const Contact& c) { return std::ranges::find(contacts.value(), c) != contacts.value().end(); };
     const bool tie = has(first) && has(second);
     return {has(first) && !tie ? 1 : 0, has(first) ? Rung::exact : Rung::none, 0, infinity, "exact contacts"};
 }
@@ -216,8 +214,7 @@ inline Answer exact_grazing(int sign, int decade) {
     if (!contacts.ok()) {
         return {-1, Rung::exact, 0, infinity, contacts.failure().message()};
     }
-    const bool touches =
-        std::find(contacts.value().begin(), contacts.value().end(), pair(2, 3)) != contacts.value().end();
+    const bool touches = std::ranges::find(contacts.value(), pair(2, 3)) != contacts.value().end();
     return {touches ? 0 : 1, Rung::exact, 0, infinity, "exact contacts"};
 }
 
@@ -247,7 +244,7 @@ inline Answer exact_lattice(int sign, int decade) {
     if (seen.hyperstaticity != 0 || seen.rank_exact != Verdict::proved) {
         return {0, Rung::exact, 0, 0, "h = " + std::to_string(seen.hyperstaticity)};
     }
-    const bool rattler = std::find(seen.without_force.begin(), seen.without_force.end(), 3) != seen.without_force.end();
+    const bool rattler = std::ranges::find(seen.without_force, 3) != seen.without_force.end();
     return {rattler ? 1 : -1, Rung::exact, 0, infinity, rattler ? "disk 3 is a rattler" : "disk 3 carries the walls"};
 }
 

@@ -60,7 +60,7 @@ inline std::string row_with(const std::string& csv, std::size_t line, const std:
     const std::vector<std::string> lines = scratch::split(csv, '\n');
     const std::vector<std::string> names = scratch::split(lines.at(0).substr(2), ',');
     std::vector<std::string> fields = scratch::split(lines.at(line), ',');
-    fields.at(static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin())) = value;
+    fields.at(static_cast<std::size_t>(std::ranges::find(names, column) - names.begin())) = value;
     return scratch::joined(fields, ',');
 }
 

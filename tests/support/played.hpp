@@ -61,11 +61,15 @@ inline isostat::SegmentOutcome into(const std::filesystem::path& folder, isostat
     return outcome;
 }
 
+inline void without_objection(const RunVerification& run) {
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+}
+
 /// All of the run is proved.
 inline RunVerification proved(const std::filesystem::path& folder) {
     RunVerification run = isostat::verify_run(folder);
-    BOOST_TEST(run.wrong == "");
-    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+    without_objection(run);
     BOOST_TEST((run.verdict == isostat::Verdict::proved));
     BOOST_TEST(run.arcs_proved == run.arcs);
     return run;

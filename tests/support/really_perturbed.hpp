@@ -1,9 +1,9 @@
 #pragma once
 // The same packing with radii that are really changed by a little: what a rule for ties is compared with.
 
-#include "linear/factorisation.hpp"
 #include "statics/first_order_backbone.hpp"
 #include "support/crafted.hpp"
+#include "support/newton.hpp"
 
 namespace crafted {
 
@@ -22,16 +22,7 @@ inline State really_perturbed(State state, const std::vector<double>& rho, doubl
         state.packing.radius[i] += eps * rho[i];
     }
     for (int step = 0; step < 12; ++step) {
-        auto structure = required(isostat::IsostaticStructure::prove(state.packing, state.contacts));
-        const isostat::Factorisation factorisation(structure);
-        std::vector<double> v;
-        for (const Contact& c : state.contacts) {
-            v.push_back(isostat::gap(state.packing, c));
-        }
-        factorisation.solve_velocities(v);
-        for (std::size_t mu = 0; mu < v.size(); ++mu) {
-            state.packing.q[static_cast<std::size_t>(structure.dofs().coordinate_of(static_cast<int>(mu)))] += v[mu];
-        }
+        step_to_gaps(state.packing, state.contacts, std::vector<double>(state.contacts.size(), 0));
         isostat::snap_to_grid(state.packing);
     }
     return state;

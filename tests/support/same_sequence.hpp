@@ -50,15 +50,8 @@ inline Disguised disguised(State state, const std::function<Contact(const Contac
     return {std::move(state), std::move(back)};
 }
 
-/// Disks in another order, contacts too.
-inline Disguised relabelled(const State& start, unsigned seed) {
-    const int n = start.packing.disk_count();
-    std::vector<int> label(static_cast<std::size_t>(n)); // new label -> old label
-    std::iota(label.begin(), label.end(), 0);
-    std::mt19937 random(seed);
-    for (std::size_t k = label.size(); k > 1; --k) {
-        std::swap(label[k - 1], label[random() % k]);
-    }
+/// Disk label[k] is the k-th one.
+inline Disguised with_labels(const State& start, const std::vector<int>& label) {
     std::vector<int> inverse(label.size());
     State state = start;
     for (std::size_t k = 0; k < label.size(); ++k) {
@@ -73,15 +66,26 @@ inline Disguised relabelled(const State& start, unsigned seed) {
     const auto relabel = [](const std::vector<int>& to) {
         return [to](const Contact& c) {
             return c.kind == ContactKind::disk_disk
-                       ? pair(to[static_cast<std::size_t>(c.i)], to[static_cast<std::size_t>(c.j)])
+                       ? pair_of(to[static_cast<std::size_t>(c.i)], to[static_cast<std::size_t>(c.j)], c.image)
                    : c.kind == ContactKind::held && c.i / 2 < static_cast<int>(to.size())
                        ? Contact{c.kind, 2 * to[static_cast<std::size_t>(c.i / 2)] + c.i % 2, 0}
                    : c.kind == ContactKind::held ? c
                                                  : Contact{c.kind, to[static_cast<std::size_t>(c.i)], c.j};
         };
     };
-    Disguised other = disguised(std::move(state), relabel(inverse), relabel(label));
-    std::reverse(other.state.contacts.begin(), other.state.contacts.end());
+    return disguised(std::move(state), relabel(inverse), relabel(label));
+}
+
+/// Disks in another order, contacts too.
+inline Disguised relabelled(const State& start, unsigned seed) {
+    std::vector<int> label(start.packing.radius.size());
+    std::iota(label.begin(), label.end(), 0);
+    std::mt19937 random(seed);
+    for (std::size_t k = label.size(); k > 1; --k) {
+        std::swap(label[k - 1], label[random() % k]);
+    }
+    Disguised other = with_labels(start, label);
+    std::ranges::reverse(other.state.contacts);
     return other;
 }
 

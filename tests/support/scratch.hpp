@@ -36,6 +36,11 @@ class Folder {
     std::filesystem::path path_;
 };
 
+/// The fixture of a case with a folder.
+struct InFolder {
+    const Folder folder;
+};
+
 inline std::string read(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::ostringstream text;
@@ -56,6 +61,15 @@ inline std::string data(const std::string& name) {
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+/// How often `what` occurs.
+inline int count(const std::string& text, const std::string& what) {
+    int n = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
+        ++n;
+    }
+    return n;
 }
 
 /// Words between blanks.

@@ -59,9 +59,9 @@ inline State state_of_spheres(const nlohmann::json& file) {
         p.radius.push_back(number(r));
     }
     for (const nlohmann::json& x : file["position"]) {
-        std::transform(x.begin(), x.end(), std::back_inserter(p.q), number);
+        std::ranges::transform(x, std::back_inserter(p.q), number);
     }
-    std::transform(file["cell"].begin(), file["cell"].end(), std::back_inserter(p.q), number);
+    std::ranges::transform(file["cell"], std::back_inserter(p.q), number);
     for (std::size_t a = 0; a < 3; ++a) {
         p.cell.periodic[a] = file["axes"][a] == "periodic";
         p.cell.period_moves[a] = p.cell.periodic[a];
@@ -80,10 +80,10 @@ inline State state_of_spheres(const nlohmann::json& file) {
     }
     if (file.contains("infinitesimal_load")) {
         for (const nlohmann::json& g : file["infinitesimal_load"]) {
-            std::transform(g.begin(), g.end(), std::back_inserter(state.load.infinitesimal), number);
+            std::ranges::transform(g, std::back_inserter(state.load.infinitesimal), number);
         }
     }
-    std::transform(file["contacts"].begin(), file["contacts"].end(), std::back_inserter(state.contacts), contact_of);
+    std::ranges::transform(file["contacts"], std::back_inserter(state.contacts), contact_of);
     return state;
 }
 

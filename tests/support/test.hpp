@@ -27,8 +27,26 @@
 #include <utility>
 #include <vector>
 
-/// The value of a result; the test ends with the message of a failure.
+/// What is there; the test ends, with the message of a failure, where nothing is.
 template <class T> T required(isostat::Result<T> result) {
     BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
     return std::move(result.value());
+}
+
+template <class T> T required(std::optional<T> value) {
+    BOOST_REQUIRE(value.has_value());
+    return std::move(*value);
+}
+
+/// There is no answer, for a reason of this kind, whose message has these words.
+template <class T>
+isostat::Failure fails(const isostat::Result<T>& result, isostat::FailureKind kind,
+                       const std::vector<std::string>& words = {}) {
+    BOOST_REQUIRE(!result.ok());
+    const std::string message = result.failure().message();
+    BOOST_TEST((result.failure().kind == kind), message);
+    for (const std::string& word : words) {
+        BOOST_TEST(message.find(word) != std::string::npos, "'" << word << "' is not in: " << message);
+    }
+    return result.failure();
 }

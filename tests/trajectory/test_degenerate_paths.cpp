@@ -6,8 +6,6 @@
 #include "support/really_perturbed.hpp"
 #include "support/segments.hpp"
 
-#include <tuple>
-
 using namespace isostat;
 using namespace crafted;
 

@@ -3,6 +3,7 @@
 #include "support/crafted.hpp"
 #include "support/same_sequence.hpp"
 #include "support/segments.hpp"
+#include "support/units.hpp"
 
 #include <isostat/certificate/certify.hpp>
 
@@ -73,12 +74,7 @@ BOOST_FIXTURE_TEST_CASE(scaling_by_powers_of_two_changes_no_bit, Base) {
         State scaled = start;
         const double l = std::ldexp(1.0, length);
         const double s = std::ldexp(1.0, stress);
-        for (double& r : scaled.packing.radius) {
-            r *= l;
-        }
-        for (double& x : scaled.packing.q) {
-            x *= l;
-        }
+        units::stretch(scaled.packing, l);
         for (std::size_t a = 0; a < 2; ++a) {
             scaled.load.stress[a] *= s;
             scaled.load.reference_length[a] *= l;

@@ -20,7 +20,7 @@ BOOST_AUTO_TEST_CASE(flags_of_kept_candidates_follow_exchanges_moves_within_the_
             }
             candidates.push_back({ContactKind::lower_wall, i, 0});
         }
-        std::sort(candidates.begin(), candidates.end());
+        std::ranges::sort(candidates);
     };
     const auto any = [&] {
         return candidates[static_cast<std::size_t>(random.integer(static_cast<int>(candidates.size())))];
@@ -29,7 +29,7 @@ BOOST_AUTO_TEST_CASE(flags_of_kept_candidates_follow_exchanges_moves_within_the_
     std::vector<Contact> contacts;
     while (contacts.size() < 40) {
         const Contact contact = any();
-        if (std::find(contacts.begin(), contacts.end(), contact) == contacts.end()) {
+        if (std::ranges::find(contacts, contact) == contacts.end()) {
             contacts.push_back(contact);
         }
     }
@@ -39,7 +39,7 @@ BOOST_AUTO_TEST_CASE(flags_of_kept_candidates_follow_exchanges_moves_within_the_
         switch (random.integer(step % 50 == 49 ? 4 : 3)) {
         case 0: { // an exchange
             const Contact contact = any();
-            if (std::find(contacts.begin(), contacts.end(), contact) == contacts.end()) {
+            if (std::ranges::find(contacts, contact) == contacts.end()) {
                 contacts[slot] = contact;
             }
             break;

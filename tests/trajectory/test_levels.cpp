@@ -186,7 +186,7 @@ BOOST_AUTO_TEST_CASE(a_power_that_turns_within_the_first_step_is_found_whatever_
         }
         BOOST_TEST((events.empty() || events == list));
         events = list;
-        BOOST_TEST(std::any_of(run.records.arcs.begin(), run.records.arcs.end(), [](const auto& arc) {
+        BOOST_TEST(std::ranges::any_of(run.records.arcs, [](const auto& arc) {
             return arc.power_turn && arc.opened == Contact{ContactKind::disk_disk, 17, 69};
         }));
     }

@@ -14,8 +14,7 @@ namespace {
 
 /// Loaded stress at which the force in a contact vanishes.
 Real vanishing_stress(const State& state, const oracle::Truth& truth, const Contact& opens) {
-    const auto l = static_cast<std::size_t>(std::find(state.contacts.begin(), state.contacts.end(), opens) -
-                                            state.contacts.begin());
+    const auto l = static_cast<std::size_t>(std::ranges::find(state.contacts, opens) - state.contacts.begin());
     BOOST_TEST_REQUIRE(l < state.contacts.size());
     return Real(state.load.loaded_stress()) - truth.force[l] / truth.rate[l];
 }

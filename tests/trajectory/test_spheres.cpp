@@ -120,7 +120,7 @@ BOOST_AUTO_TEST_CASE(a_sphere_of_a_tetrahedron_leaves_with_its_four_contacts) {
     BOOST_TEST((record.opens_low == floor_of(0)), to_string(record.opens_low));
     const std::vector<Contact> four{
         {ContactKind::upper_wall, 1, 0}, {ContactKind::upper_wall, 1, 1}, floor_of(1), ::crafted::pair(0, 1)};
-    BOOST_TEST((std::find(four.begin(), four.end(), record.opens_high) != four.end()), to_string(record.opens_high));
+    BOOST_TEST((std::ranges::find(four, record.opens_high) != four.end()), to_string(record.opens_high));
 }
 
 BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program_are_followed) {

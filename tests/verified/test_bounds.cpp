@@ -2,12 +2,14 @@
 // Enclosures of vertices with bars against the vertex to 200 digits.
 // Bounds for contact matrices with more columns than rows.
 #include "contact/candidates.hpp"
+#include "core/dot.hpp"
 #include "core/roundoff.hpp"
 #include "oracle/random.hpp"
 #include "oracle/truth.hpp"
 #include "statics/statics.hpp"
 #include "support/clumps.hpp"
 #include "support/crafted.hpp"
+#include "support/free_grains.hpp"
 #include "support/regular.hpp"
 #include "support/test.hpp"
 #include "verified/configuration.hpp"
@@ -33,7 +35,7 @@ using Vector = oracle::Truth::Vector;
 
 void scale(Vector& x) {
     const Real size = sqrt(std::inner_product(x.begin(), x.end(), x.begin(), Real(0)));
-    std::for_each(x.begin(), x.end(), [&size](Real& c) { c /= size; });
+    std::ranges::for_each(x, [&size](Real& c) { c /= size; });
 }
 
 /// A lower bound of |H^-1|_2 that converges to it: power iteration on H^-T H^-1.
@@ -96,13 +98,7 @@ bool check(const State& state, const std::vector<double>& force) {
 
 /// A free disk between two fixed ones whose directions differ from opposite by `angle`: sigma_min ~ angle / sqrt 2.
 State nearly_collinear(double angle) {
-    State state;
-    state.packing.walls = Walls::none();
-    state.packing.radius = {1, 1, 1};
-    state.packing.q = {-2, 0, 2 * std::cos(angle), 2 * std::sin(angle), 0, 0, 0, 0};
-    state.packing.fixed = {1, 1, 0};
-    state.contacts = {pair(0, 2), pair(1, 2)};
-    return state;
+    return crafted::held_by_two({1, 1, 1}, {-2, 0, 2 * std::cos(angle), 2 * std::sin(angle), 0, 0});
 }
 
 isostat::sparse::Matrix<double> compressed(const Eigen::MatrixXd& dense) {
@@ -149,9 +145,7 @@ BOOST_AUTO_TEST_CASE(bounds_hold_near_singular_matrices) {
 BOOST_AUTO_TEST_CASE(an_exactly_collinear_strut_is_never_proved_regular) {
     State state = nearly_collinear(0);
     state.packing.q = {-2, 0, 2, 0, 0, 0, 0, 0};
-    const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(!structure.ok());
-    BOOST_TEST((structure.failure().kind == FailureKind::not_isostatic));
+    fails(IsostaticStructure::prove(state.packing, state.contacts), FailureKind::not_isostatic);
     // Tilted, it is singular as well, but not by its pattern.
     state.packing.q = {-2, -1, 2, 1, 0, 0, 0, 0};
     BOOST_TEST(!IsostaticStructure::prove(state.packing, state.contacts).ok());
@@ -189,9 +183,8 @@ BOOST_AUTO_TEST_CASE(newtons_method_ends_where_all_gaps_of_the_list_are_0_and_no
         BOOST_TEST(std::abs(end.q[k] - vertex.packing.q[k]) < 1e-14);
     }
     end = pushed;
-    const auto failure = to_vertex(end, vertex.contacts, steps, 1e-3);
-    BOOST_REQUIRE(failure.has_value());
-    BOOST_TEST((failure->kind == FailureKind::not_converged));
+    const auto failure = required(to_vertex(end, vertex.contacts, steps, 1e-3));
+    BOOST_TEST((failure.kind == FailureKind::not_converged));
     BOOST_TEST((end.q == pushed.q));
 }
 
@@ -228,10 +221,7 @@ BOOST_AUTO_TEST_CASE(the_newton_step_encloses_the_vertex_and_hardly_more) {
         {"/vertex100.txt", 1e-7},       {"/cells/tilt_16.json", 1e-11},   {"/cells/tilt_16.json", 1e-8},
         {"/cells/rect_16.json", 1e-11}, {"/cells/channel_16.json", 1e-11}};
     for (const auto& [file, push] : cases) {
-        State moved = read_any_state(ISOSTAT_TEST_DATA + std::string(file)).state;
-        for (std::size_t k = 0; k < moved.packing.q.size(); ++k) {
-            moved.packing.q[k] += push * std::sin(7.0 * static_cast<double>(k));
-        }
+        State moved = crafted::pushed(read_any_state(ISOSTAT_TEST_DATA + std::string(file)).state, push);
         if (moved.packing.cell.any()) {
             snap_to_grid(moved.packing);
         }
@@ -241,12 +231,9 @@ BOOST_AUTO_TEST_CASE(the_newton_step_encloses_the_vertex_and_hardly_more) {
             enclose_vertex_double_double(moved.packing, at.structure, at.factorisation, at.inverse);
         BOOST_TEST_REQUIRE((step.verdict == Verdict::proved));
         BOOST_TEST_REQUIRE((fine.rung == Rung::double_double));
-        double square = 0;
-        for (const double c : fine.correction) {
-            square += c * c;
-        }
-        BOOST_TEST(std::sqrt(square) <= step.radius + fine.radius);
-        BOOST_TEST(step.radius < 1.6 * std::sqrt(square));
+        const double moved_by = isostat::euclidean_norm(fine.correction);
+        BOOST_TEST(moved_by <= step.radius + fine.radius);
+        BOOST_TEST(step.radius < 1.6 * moved_by);
         BOOST_TEST(step.radius < 0.1 * enclose_vertex(moved.packing, at.structure, at.inverse).radius);
     }
 }
@@ -257,9 +244,7 @@ BOOST_AUTO_TEST_CASE(forces_turn_with_their_contacts_within_the_bound_and_reach_
     const sparse::Matrix<double> h = contact_matrix(state.packing, dofs, state.contacts);
     oracle::Random random(5);
     std::vector<double> x(state.contacts.size());
-    for (double& c : x) {
-        c = random.real(-1, 1);
-    }
+    std::ranges::generate(x, [&] { return random.real(-1, 1); });
     x[7] = 20; // the worst disks are at one of its ends
     const double rate = turn_of_forces(state.packing, state.contacts, x);
     double largest = 0;

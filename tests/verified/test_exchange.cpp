@@ -69,12 +69,11 @@ BOOST_AUTO_TEST_CASE(bounds_after_an_exchange_lie_below_the_smallest_singular_va
         if (!arc.ok()) {
             continue;
         }
-        const auto next =
-            IsostaticStructure::exchange(from.structure, arc.value().end, ContactId(opened), arc.value().closed);
-        BOOST_TEST_REQUIRE(next.has_value());
-        const ApproximateInverse approximate = from.factorisation.approximate().exchanged(next->slot(), next->matrix());
-        const auto by_cholesky = bound_exchanged(*next, approximate, from.cache);
-        auto proved = required(IsostaticStructure::prove(arc.value().end, next->contacts()));
+        const auto next = required(
+            IsostaticStructure::exchange(from.structure, arc.value().end, ContactId(opened), arc.value().closed));
+        const ApproximateInverse approximate = from.factorisation.approximate().exchanged(next.slot(), next.matrix());
+        const auto by_cholesky = bound_exchanged(next, approximate, from.cache);
+        auto proved = required(IsostaticStructure::prove(arc.value().end, next.contacts()));
         const double sigma = smallest_singular_value(proved);
         if (by_cholesky) {
             BOOST_TEST(by_cholesky->bound.sigma_min < sigma * 1.001);
@@ -82,7 +81,7 @@ BOOST_AUTO_TEST_CASE(bounds_after_an_exchange_lie_below_the_smallest_singular_va
             ++fresh;
         }
         // In a box with nothing fixed the tangent has the numbering of the degrees of freedom.
-        const auto bound = carry_bound(from.structure, from.inverse, *next, approximate, arc.value().tangent);
+        const auto bound = carry_bound(from.structure, from.inverse, next, approximate, arc.value().tangent);
         if (!bound) {
             continue;
         }
@@ -100,25 +99,21 @@ BOOST_AUTO_TEST_CASE(without_motion_a_bound_is_carried_with_little_loss_and_a_wr
     Exchange from;
     // A held coordinate in place of a contact, the packing unmoved: the kept rows are the same.
     const std::vector<double> v = from.factorisation.approximate().mechanism(5);
-    const auto fastest =
-        std::max_element(v.begin(), v.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto fastest = std::ranges::max_element(v, [](double a, double b) { return std::abs(a) < std::abs(b); });
     const Contact held{ContactKind::held, static_cast<int>(fastest - v.begin()), 0};
-    const auto next = IsostaticStructure::exchange(from.structure, from.state.packing, ContactId(5), held);
-    BOOST_TEST_REQUIRE(next.has_value());
-    const ApproximateInverse approximate = from.factorisation.approximate().exchanged(5, next->matrix());
-    const auto bound = carry_bound(from.structure, from.inverse, *next, approximate, v);
+    const auto next = required(IsostaticStructure::exchange(from.structure, from.state.packing, ContactId(5), held));
+    const ApproximateInverse approximate = from.factorisation.approximate().exchanged(5, next.matrix());
+    const auto bound = carry_bound(from.structure, from.inverse, next, approximate, v);
     BOOST_TEST_REQUIRE(bound.has_value());
-    const auto proved = required(IsostaticStructure::prove(from.state.packing, next->contacts()));
+    const auto proved = required(IsostaticStructure::prove(from.state.packing, next.contacts()));
     const double sigma = smallest_singular_value(proved);
     BOOST_TEST(bound->bound.sigma_min < sigma * 1.001);
     BOOST_TEST(bound->bound.sigma_min > 0.5 * std::min(sigma, from.inverse.sigma_min));
     // A guess that is no mechanism at all is refined or refused; what comes out is still a bound.
     oracle::Random random(5);
     std::vector<double> wrong(v.size());
-    for (double& c : wrong) {
-        c = static_cast<double>(random.integer(2001)) / 1000 - 1;
-    }
-    const auto still = carry_bound(from.structure, from.inverse, *next, approximate, wrong);
+    std::ranges::generate(wrong, [&] { return static_cast<double>(random.integer(2001)) / 1000 - 1; });
+    const auto still = carry_bound(from.structure, from.inverse, next, approximate, wrong);
     BOOST_TEST((!still || still->bound.sigma_min < sigma * 1.001));
 }
 
@@ -302,15 +297,14 @@ BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_tak
         if (!arc.ok()) {
             continue;
         }
-        auto next =
-            IsostaticStructure::exchange(from.structure, arc.value().end, ContactId(opened), arc.value().closed);
-        BOOST_TEST_REQUIRE(next.has_value());
-        const ApproximateInverse approximate = from.factorisation.approximate().exchanged(next->slot(), next->matrix());
-        const auto proved = bound_exchanged(*next, approximate, from.cache);
+        auto next = required(
+            IsostaticStructure::exchange(from.structure, arc.value().end, ContactId(opened), arc.value().closed));
+        const ApproximateInverse approximate = from.factorisation.approximate().exchanged(next.slot(), next.matrix());
+        const auto proved = bound_exchanged(next, approximate, from.cache);
         if (!proved) {
             continue;
         }
-        const auto structure = IsostaticStructure::exchanged(std::move(*next), proved->proof);
+        const auto structure = IsostaticStructure::exchanged(std::move(next), proved->proof);
         const Factorisation stale(structure, approximate);
         const Factorisation fresh(structure);
         const Packing& packing = arc.value().end;
@@ -351,16 +345,14 @@ BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_tak
 BOOST_AUTO_TEST_CASE(a_structure_says_what_its_regularity_was_proved_with) {
     Exchange from;
     BOOST_TEST((from.structure.evidence() == RegularityEvidence::elimination));
-    const auto next =
-        IsostaticStructure::exchange(from.structure, from.state.packing, ContactId(5), from.structure.contacts()[5]);
-    BOOST_TEST_REQUIRE(next.has_value());
-    auto unproved = *next;
+    const auto next = required(
+        IsostaticStructure::exchange(from.structure, from.state.packing, ContactId(5), from.structure.contacts()[5]));
+    auto unproved = next;
     BOOST_TEST((IsostaticStructure::without_proof(std::move(unproved)).evidence() == RegularityEvidence::none));
-    const auto proved = bound_exchanged(*next, from.factorisation.approximate(), from.cache);
-    BOOST_TEST_REQUIRE(proved.has_value());
-    auto contacts = *next;
-    // The proof is of the matrix of *next, which the copy shares.
-    BOOST_TEST((IsostaticStructure::exchanged(std::move(contacts), proved->proof).evidence() ==
+    const auto proved = required(bound_exchanged(next, from.factorisation.approximate(), from.cache));
+    auto contacts = next;
+    // The proof is of the matrix of next, which the copy shares.
+    BOOST_TEST((IsostaticStructure::exchanged(std::move(contacts), proved.proof).evidence() ==
                 RegularityEvidence::singular_value));
 }
 
@@ -384,10 +376,9 @@ BOOST_AUTO_TEST_CASE(nothing_is_carried_when_the_grains_moved_farther_than_the_b
     Packing moved = from.state.packing;
     moved.q[20] += 0.5 * moved.min_radius();
     const auto next =
-        IsostaticStructure::exchange(from.structure, moved, ContactId(5), Contact{ContactKind::held, 0, 0});
-    BOOST_TEST_REQUIRE(next.has_value());
-    const ApproximateInverse approximate = from.factorisation.approximate().exchanged(5, next->matrix());
+        required(IsostaticStructure::exchange(from.structure, moved, ContactId(5), Contact{ContactKind::held, 0, 0}));
+    const ApproximateInverse approximate = from.factorisation.approximate().exchanged(5, next.matrix());
     BOOST_TEST(
-        !carry_bound(from.structure, from.inverse, *next, approximate, from.factorisation.approximate().mechanism(5))
+        !carry_bound(from.structure, from.inverse, next, approximate, from.factorisation.approximate().mechanism(5))
              .has_value());
 }

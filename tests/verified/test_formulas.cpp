@@ -3,6 +3,7 @@
 #include "oracle/random.hpp"
 #include "oracle/truth.hpp"
 #include "support/crafted.hpp"
+#include "support/free_grains.hpp"
 #include "support/regular.hpp"
 #include "support/scale.hpp"
 #include "support/scratch.hpp"
@@ -58,7 +59,7 @@ Real lipschitz_of(const State& state) {
             smallest = smallest < 0 || d < smallest ? d : smallest;
         }
     }
-    return 2 * sqrt(Real(*std::max_element(count.begin(), count.end()))) / smallest;
+    return 2 * sqrt(Real(*std::ranges::max_element(count))) / smallest;
 }
 
 /// |F|_2 of T9.
@@ -80,25 +81,12 @@ Real residual_of(const State& state) {
     return norm_of(f);
 }
 
-State pushed(State state, double size) {
-    for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
-        state.packing.q[k] += size * std::sin(7.0 * static_cast<double>(k));
-    }
-    return state;
-}
-
 /// A free disk of radius `free` between two fixed ones of radius 1, which are opposite up to `angle`; all turned by
 /// `tilt`. Singular values: some angle / sqrt 2, and sqrt 2.
 State between_two(double angle, double tilt, double free = 1) {
-    State state;
     const double d = 1 + free;
-    state.packing.walls = Walls::none();
-    state.packing.radius = {1, 1, free};
-    state.packing.q = {
-        -d * std::cos(tilt), -d * std::sin(tilt), d * std::cos(tilt + angle), d * std::sin(tilt + angle), 0, 0, 0, 0};
-    state.packing.fixed = {1, 1, 0};
-    state.contacts = {pair(0, 2), pair(1, 2)};
-    return state;
+    return crafted::held_by_two({1, 1, free}, {-d * std::cos(tilt), -d * std::sin(tilt), d * std::cos(tilt + angle),
+                                               d * std::sin(tilt + angle), 0, 0});
 }
 
 /// The unit vector from disk k to disk 2 at its place plus `shift`: the gradient of their gap.
@@ -158,7 +146,7 @@ BOOST_AUTO_TEST_CASE(rounding_of_entries_is_that_of_V1) {
             most = std::max(most, column);
         }
         check_above(rounding_of_entries(h, state.packing.dimension),
-                    5 * u * sqrt(most * *std::max_element(row.begin(), row.end())), 0.01);
+                    5 * u * sqrt(most * *std::ranges::max_element(row)), 0.01);
     }
 }
 
@@ -197,7 +185,7 @@ BOOST_AUTO_TEST_CASE(rates_of_change_are_those_of_V4_and_V6) {
                 weight[static_cast<std::size_t>(c.j)] += w;
             }
         }
-        const Real heaviest = *std::max_element(weight.begin(), weight.end());
+        const Real heaviest = *std::ranges::max_element(weight);
         check_above(turn_of_forces(state.packing, state.contacts, x), 2 * heaviest / Real("0.99"), 0.02);
     }
 }
@@ -230,7 +218,7 @@ BOOST_AUTO_TEST_CASE(rates_of_change_in_cells_are_those_of_C5) {
             fourth[disks] += m2 == 0 ? Real(0) : Real(w2 * w2 / (d * d));
             turn[disks] += part * m * ((own ? 0 : 2) + m);
         }
-        const auto largest = [](const std::vector<Real>& v) { return *std::max_element(v.begin(), v.end()); };
+        const auto largest = [](const std::vector<Real>& v) { return *std::ranges::max_element(v); };
         check_above(lipschitz(state.packing, state.contacts), sqrt(largest(fourth)), 1e-8);
         check_above(turn_of_forces(state.packing, state.contacts, x), largest(turn) / Real("0.99"), 0.03);
     }
@@ -325,12 +313,7 @@ BOOST_AUTO_TEST_CASE(what_a_newton_step_leaves_is_counted_as_V4_says) {
     check_above(vertex.step_radius, (rest + product * eta) * (1 - Real("1e-6")), 0.01);
     check_above(vertex.radius, eta * (1 + product) * (1 - Real("1e-6")), 0.01);
     // Gaps that are exactly 0: what remains is 2^-98 D of each.
-    State exact;
-    exact.packing.walls = Walls::none();
-    exact.packing.radius = {3, 3, 2};
-    exact.packing.q = {-3, 0, 3, 0, 0, 4, 0, 0};
-    exact.packing.fixed = {1, 1, 0};
-    exact.contacts = {pair(0, 2), pair(1, 2)};
+    const State exact = crafted::held_by_two({3, 3, 2}, {-3, 0, 3, 0, 0, 4});
     const Known at(exact);
     const VertexEnclosure here = enclose_vertex(exact.packing, at.structure, at.factorisation, at.inverse);
     BOOST_TEST_REQUIRE((here.verdict == Verdict::proved));
@@ -367,16 +350,15 @@ BOOST_AUTO_TEST_CASE(a_bound_is_carried_less_the_change_of_the_kept_rows) {
         bound.sigma_min = smaller_singular_value(state).convert_to<double>() * (1 - 1e-12);
         State moved = state;
         moved.packing.q[5] = 0.5 * std::tan(angle / 2) * 2;
-        const auto next = IsostaticStructure::exchange(known.structure, moved.packing, ContactId(3), pair(5, 6));
-        BOOST_TEST_REQUIRE(next.has_value());
+        const auto next =
+            required(IsostaticStructure::exchange(known.structure, moved.packing, ContactId(3), pair(5, 6)));
         const ApproximateInverse& before = known.factorisation.approximate();
-        const auto carried =
-            carry_bound(known.structure, bound, *next, before.exchanged(3, next->matrix()), before.mechanism(3));
-        BOOST_TEST_REQUIRE(carried.has_value());
+        const auto carried = required(
+            carry_bound(known.structure, bound, next, before.exchanged(3, next.matrix()), before.mechanism(3)));
         const double left = smaller_singular_value(moved).convert_to<double>();
         BOOST_TEST(left < 0.51 * bound.sigma_min);
-        BOOST_TEST(carried->bound.sigma_min <= left);
-        BOOST_TEST(carried->bound.sigma_min >= 0.95 * left);
+        BOOST_TEST(carried.bound.sigma_min <= left);
+        BOOST_TEST(carried.bound.sigma_min >= 0.95 * left);
     }
 }
 

@@ -30,9 +30,8 @@ struct Vertex : Regular {
 
     [[nodiscard]] Enclosure rate(const Contact& opened, const Contact& touching) const {
         const auto& list = structure.contacts();
-        return first.rate(
-            ContactId(static_cast<std::size_t>(std::find(list.begin(), list.end(), opened) - list.begin())), +1,
-            touching);
+        return first.rate(ContactId(static_cast<std::size_t>(std::ranges::find(list, opened) - list.begin())), +1,
+                          touching);
     }
 };
 

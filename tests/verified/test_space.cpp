@@ -3,6 +3,7 @@
 #include "core/roundoff.hpp"
 #include "oracle/random.hpp"
 #include "oracle/truth.hpp"
+#include "support/free_grains.hpp"
 #include "support/regular.hpp"
 #include "support/scale.hpp"
 #include "verified/corrected_configuration.hpp"
@@ -10,21 +11,11 @@
 #include "verified/vertex_bounds.hpp"
 
 using namespace isostat;
+using crafted::free_grains;
 
 namespace {
 
 using Exact = oracle::Real;
-
-/// Grains without walls.
-Packing free_grains(int dimension, std::vector<double> radius, std::vector<double> centres) {
-    Packing packing;
-    packing.dimension = packing.cell.dimension = dimension;
-    packing.walls = Walls::none();
-    packing.radius = std::move(radius);
-    packing.q = std::move(centres);
-    packing.q.resize(packing.coordinate_count(), 0.0);
-    return packing;
-}
 
 /// r of two grains, exactly.
 PerAxis<Exact> exact_separation(const Packing& packing, const Contact& pair) {
@@ -44,7 +35,7 @@ oracle::SquareMatrix<Exact> exact_contact_matrix_of(const State& state) {
         if (state.contacts[l].kind == ContactKind::disk_disk) {
             normal = exact_separation(state.packing, state.contacts[l]);
             const Exact distance = sqrt(square_of(normal));
-            std::for_each(normal.begin(), normal.end(), [&](Exact& c) { c /= distance; });
+            std::ranges::for_each(normal, [&](Exact& c) { c /= distance; });
         }
         Separation(state.contacts[l], state.packing.layout())
             .for_each_entry(dofs, normal,
@@ -67,7 +58,7 @@ Packing badly_rounded_pair(int dimension, oracle::Random& random) {
     const double even = std::floor(std::ldexp(x.back(), 57));
     x[second - 1] = -0x1p-7;
     x.back() = std::ldexp(even, -57) - 0x1p-7 - 0x1p-59;
-    return free_grains(dimension, {1, 1}, std::move(x));
+    return free_grains({1, 1}, std::move(x), dimension);
 }
 
 /// Largest relative error of an entry that is found, in units of u.
@@ -100,7 +91,7 @@ double error_of_gap_function(const Packing& packing, const std::vector<double>& 
 /// Climbs from a pair of touching spheres drawn at random: whatever increases the error is kept.
 double climbed_error(oracle::Random& random) {
     const Contact pair(ContactKind::disk_disk, 0, 1);
-    Packing packing = free_grains(3, {random.real(1, 2), random.real(1, 2)}, std::vector<double>(6));
+    Packing packing = free_grains({random.real(1, 2), random.real(1, 2)}, {}, 3);
     const double distance = packing.radius[0] + packing.radius[1];
     std::vector<double> direction{random.real(-1, 1), random.real(-1, 1), random.real(-1, 1)};
     const double length = std::hypot(direction[0], direction[1], direction[2]);
@@ -134,7 +125,7 @@ State structure_in_space(std::uint64_t seed, bool cell) {
     constexpr int n = 4;
     oracle::Random random(seed);
     State state;
-    state.packing = free_grains(3, std::vector<double>(n, 1), {});
+    state.packing = free_grains(std::vector<double>(n, 1), {}, 3);
     Packing& packing = state.packing;
     if (cell) {
         packing.cell.repeat();
@@ -155,7 +146,7 @@ State structure_in_space(std::uint64_t seed, bool cell) {
                               : i > j       ? Contact(ContactKind::lower_wall, i, random.integer(3))
                                             : Contact(ContactKind::upper_wall, i, random.integer(3));
         const bool nothing = drawn.kind == ContactKind::disk_disk && drawn.i == drawn.j;
-        if (!nothing && std::find(state.contacts.begin(), state.contacts.end(), drawn) == state.contacts.end()) {
+        if (!nothing && std::ranges::find(state.contacts, drawn) == state.contacts.end()) {
             state.contacts.push_back(drawn);
         }
     }
@@ -180,7 +171,7 @@ bool bounds_hold(const State& state) {
     BOOST_TEST(at.inverse.sigma_min >= 0.05 * smallest);
     oracle::Random random(3);
     std::vector<double> load(state.contacts.size());
-    std::generate(load.begin(), load.end(), [&] { return random.real(-1, 1); });
+    std::ranges::generate(load, [&] { return random.real(-1, 1); });
     const ForceSolution solution = solve_forces(at.structure, at.factorisation, at.inverse, load);
     BOOST_TEST_REQUIRE(h.factorise());
     const std::vector<Exact> exact = h.solve(std::vector<Exact>(load.begin(), load.end()));
@@ -211,7 +202,7 @@ BOOST_AUTO_TEST_CASE(gap_functions_of_spheres_err_by_less_than_V5_says) {
 }
 
 BOOST_AUTO_TEST_CASE(separations_over_three_periods_and_three_tilts_need_the_coarser_grid_of_spheres) {
-    Packing packing = free_grains(3, {1, 1}, {-1, 0, 0, 0, 0, 0});
+    Packing packing = free_grains({1, 1}, {-1}, 3);
     packing.cell.repeat();
     packing.q.resize(packing.coordinate_count(), 1.0);
     std::fill(packing.q.begin() + 6, packing.q.end(), 1.0);
@@ -237,10 +228,10 @@ BOOST_AUTO_TEST_CASE(a_separation_through_an_image_in_space_changes_at_the_rate_
     oracle::Random random(20);
     double largest = 0;
     for (int trial = 0; trial < 2000; ++trial) {
-        Packing packing = free_grains(3, {1, 1}, {});
+        Packing packing = free_grains({1, 1}, {}, 3);
         packing.cell.repeat();
         packing.q.resize(packing.coordinate_count());
-        std::generate(packing.q.begin(), packing.q.end(), [&] { return random.real(-1, 1); });
+        std::ranges::generate(packing.q, [&] { return random.real(-1, 1); });
         const auto m = [&] { return static_cast<std::int8_t>(random.integer(7) - 3); };
         const Contact pair(ContactKind::disk_disk, 0, 1, {{m(), m(), m()}});
         const GapGradient g = gap_gradient(packing, pair);

@@ -10,7 +10,6 @@
 #include <isostat/packing/load.hpp>
 #include <isostat/rigidity/counting.hpp>
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>

@@ -85,7 +85,7 @@ struct ForeignPacking {
     std::vector<std::string> notes;
 };
 
-/// "lammps-data", "lammps-dump", "xyz", "table", "braces", "centres".
+/// The names of the formats that `parse_foreign` reads.
 const std::vector<std::string>& foreign_formats();
 
 /// Reads a packing from text. Numbers are rounded to the nearest double.

@@ -8,8 +8,6 @@
 #include <isostat/packing/packing.hpp>
 
 #include <array>
-#include <cstdint>
-#include <string>
 #include <vector>
 
 namespace isostat {

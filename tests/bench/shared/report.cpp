@@ -51,7 +51,7 @@ struct InCsv {
     std::string operator()(std::monostate) const { return "nan"; }
     std::string operator()(long x) const { return fmt::to_string(x); }
     std::string operator()(std::string x) const {
-        std::replace(x.begin(), x.end(), ',', ';');
+        std::ranges::replace(x, ',', ';');
         return x;
     }
     std::string operator()(bool x) const { return x ? "1" : "0"; }

@@ -33,17 +33,17 @@ double wall_milliseconds() {
 
 double Sample::median() const {
     std::vector<double> x = values_;
-    std::sort(x.begin(), x.end());
+    std::ranges::sort(x);
     const std::size_t half = x.size() / 2;
     return x.empty() ? nothing : x.size() % 2 == 1 ? x[half] : 0.5 * (x[half - 1] + x[half]);
 }
 
 double Sample::low() const {
-    return values_.empty() ? nothing : *std::min_element(values_.begin(), values_.end());
+    return values_.empty() ? nothing : *std::ranges::min_element(values_);
 }
 
 double Sample::high() const {
-    return values_.empty() ? nothing : *std::max_element(values_.begin(), values_.end());
+    return values_.empty() ? nothing : *std::ranges::max_element(values_);
 }
 
 Sample Sample::over(const Sample& unit) const {

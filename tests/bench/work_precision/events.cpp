@@ -7,8 +7,6 @@
 #include <fmt/format.h>
 #include <qd/dd_real.h>
 
-#include <functional>
-
 using namespace isostat;
 using oracle::Reference;
 using oracle::ReferenceArc;
@@ -273,8 +271,7 @@ void integration(const ReferencePath& path, int n, bool quick, Table& table) {
                 error.add(distance(here.q, *arc));
                 // Would it have stopped at another contact before?
                 for (const Contact& c : find_candidates(here, 0.3).contacts) {
-                    if (gap(here, c) < -1e-12 &&
-                        std::find(arc->end_contacts.begin(), arc->end_contacts.end(), c) == arc->end_contacts.end()) {
+                    if (gap(here, c) < -1e-12 && std::ranges::find(arc->end_contacts, c) == arc->end_contacts.end()) {
                         ++wrong;
                         break;
                     }
@@ -378,8 +375,8 @@ bool stresses(const ReferencePath& path, int n, Table& table) {
                     f[c] = fixed[c] + sigma * unit[c];
                 }
                 factorisation.solve_forces(f);
-                least = *std::min_element(f.begin(), f.end());
-                const double scale = *std::max_element(f.begin(), f.end());
+                least = *std::ranges::min_element(f);
+                const double scale = *std::ranges::max_element(f);
                 (least < -1e-13 * scale ? high : low) = sigma;
                 step *= 2;
             }

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 using namespace isostat;
 
@@ -91,8 +90,7 @@ bool small_displacements(const Settings& settings) {
                 }
                 const Factorisation factorisation(structure.value());
                 CandidateList candidates = find_candidates(here, candidate_fraction);
-                const auto opened =
-                    static_cast<int>(std::find(contacts.begin(), contacts.end(), record.opened) - contacts.begin());
+                const auto opened = static_cast<int>(std::ranges::find(contacts, record.opened) - contacts.begin());
                 double begin = cpu_seconds();
                 const auto event = find_linear_event(here, structure.value(), factorisation, ContactId(opened), +1,
                                                      candidates.contacts);

@@ -2,6 +2,7 @@
 
 #include "contact/contact_set.hpp"
 #include "contact/words.hpp"
+#include "core/dot.hpp"
 #include "statics/decisions.hpp"
 
 #include <isostat/core/machine.hpp>
@@ -39,10 +40,7 @@ Result<LinearEvent> find_linear_event(const Packing& packing, const IsostaticStr
     std::vector<double> v(static_cast<std::size_t>(structure.size()), 0.0);
     v[opened.index()] = -direction; // approach velocities: the opened gap grows
     factorisation.solve_velocities(v);
-    double fastest = 0;
-    for (const double c : v) {
-        fastest = std::max(fastest, std::abs(c));
-    }
+    const double fastest = largest(v);
     LinearEvent event;
     event.velocity.assign(packing.q.size(), 0.0);
     for (std::size_t mu = 0; mu < v.size(); ++mu) {
@@ -88,7 +86,7 @@ struct Approximation {
 std::vector<Contact> pairs_near(const Packing& packing, std::vector<Contact> contacts) {
     std::vector<Contact> pairs = find_candidates(packing, candidate_fraction).contacts;
     pairs.insert(pairs.end(), contacts.begin(), contacts.end());
-    std::sort(pairs.begin(), pairs.end());
+    std::ranges::sort(pairs);
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     return pairs;
 }

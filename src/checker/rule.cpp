@@ -234,11 +234,15 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
     if (rule == "random" && run.rule_seed) {
         return check_draw(place, event, opened, *run.rule_seed, decision.candidates);
     }
-    if (rule != "most_negative" && rule != "least_negative" && rule != "least_index") {
-        return Objection{false, fmt::format("the rule '{}' is not checked, only that the force is negative", rule),
+    if (rule == "random") {
+        return Objection{false, "the draws of the rule 'random' are not checked, only that the force is negative",
                          true};
     }
     return {};
+}
+
+std::vector<std::string_view> opening_rules() {
+    return {"most_negative", "random", "least_negative", "least_index"};
 }
 
 } // namespace isostat::checker

@@ -31,7 +31,7 @@ template <class Use> void for_each_line(const std::string& text, const Use& use)
 }
 
 /// One of the words that a record may have in a field.
-std::string word(const Field& field, std::initializer_list<std::string_view> words) {
+std::string word(const Field& field, const std::vector<std::string_view>& words) {
     if (std::find(words.begin(), words.end(), field.string()) == words.end()) {
         field.fail(fmt::format("one of {}", fmt::join(words, ", ")));
     }
@@ -165,7 +165,7 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.program = run.at("program").string();
     records.segments = static_cast<int>(run.at("programme").size());
     const Field settings = run.at("settings").at("run");
-    records.rule = word(settings.at("rule"), {"most_negative", "random", "least_negative", "least_index"});
+    records.rule = word(settings.at("rule"), opening_rules());
     if (settings.has("rule_seed")) {
         records.rule_seed = static_cast<std::uint64_t>(settings.at("rule_seed").integer());
     }

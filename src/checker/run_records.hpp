@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace isostat::checker {
@@ -56,6 +57,9 @@ struct RunRecords {
     /// The stored state of an equilibrium, with its forces, if the file exists.
     [[nodiscard]] std::optional<StateFile> stored(int equilibrium) const;
 };
+
+/// The words of the rules that a replay follows: beside what it does with them, in rule.cpp.
+std::vector<std::string_view> opening_rules();
 
 /// Throws `Error(bad_input)`.
 RunRecords read_records(const std::filesystem::path& directory, LastLine last = LastLine::complete);

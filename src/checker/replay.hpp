@@ -133,7 +133,8 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles);
 
 /// The start of the arcs to equilibrium 0: nothing overlaps there, and the contacts are those of start.json, unless the
-/// run chose among the touching pairs.
+/// run chose among the touching pairs. Where ties are chosen, pairs that start.json does not list may overlap at first
+/// order.
 Objections check_start(const Place& place, const State& given);
 
 /// The touching pairs at the start of an arc: pairs that close again on a path of length O(eps) end the arc there.

@@ -456,11 +456,15 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
 }
 
 Objections check_start(const Place& place, const State& given) {
+    const std::set<Contact> given_list = contact_set(given);
+    const std::set<Contact> list = contact_set(*place.state);
+    const bool no_other = std::includes(given_list.begin(), given_list.end(), list.begin(), list.end());
     const auto settled = [&](const Contact& pair, const Range& first) {
-        const bool left = place.chooses && first.has_zero();
+        const bool watched = no_other && !given_list.contains(pair); // since the start (C1 g)
+        const bool left = place.chooses && (first.has_zero() || watched);
         return first.positive() || left ? Objections() : touches(place.named(pair), "the start", first);
     };
-    if (!place.first && contact_set(given) != contact_set(*place.state)) {
+    if (!place.first && given_list != list) {
         return Objection{true, "start.json has other contacts than those with which its arcs lead to equilibrium 0"};
     }
     return check_no_overlap(place, "the start", settled);

@@ -56,8 +56,8 @@ TieRecord tie_of(const Field& entry, int dimension) {
         }
     };
     TieRecord tie;
-    tie.what = word(entry.at("decision"),
-                    {"force", "opening", "limit", "zero all along", "gap", "step", "second order", "end", "rest"});
+    tie.what = word(entry.at("decision"), {"force", "opening", "start", "limit", "zero all along", "gap", "step",
+                                           "second order", "end", "rest"});
     tie.contact = contact_name(entry.at("contact"), dimension);
     term(entry.at("first_order"), tie.first, tie.first_bound);
     if (entry.has("against") || entry.has("against_first_order")) {

@@ -16,7 +16,7 @@ namespace isostat::checker {
 
 /// One decision that first-order terms in the radii settled, or the rule, as its record has it.
 struct TieRecord {
-    std::string what;             ///< "force", "opening", "limit", "zero all along", "gap", "step"
+    std::string what;             ///< "force", "opening", "start", "limit", "zero all along", "gap", "step"
     std::string contact, against; ///< `against` may be empty
     std::string choice;           ///< "infinitesimal loads", "names", "zero"; empty: no choice
     double first = 0, first_bound = 0;

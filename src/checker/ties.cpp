@@ -97,9 +97,14 @@ struct Arc {
         if (what == "limit" || what == "zero all along") {
             return first_limit(base, name, opened, what != "limit");
         }
-        const auto l = position(to, name);
-        const bool tied = l && to.first && (what != "force" || contains(to.ties, *l) || contains(to.zeros, *l));
-        return tied ? std::optional(to.first_force[*l]) : std::nullopt;
+        const bool at_start = what == "start";
+        if (at_start && (event.equilibrium != 0 || event.arc != 1)) {
+            return {};
+        }
+        const Place& at = at_start ? base : to;
+        const auto l = position(at, name);
+        const bool tied = l && at.first && (what != "force" || contains(at.ties, *l) || contains(at.zeros, *l));
+        return tied ? std::optional(at.first_force[*l]) : std::nullopt;
     }
 
     [[nodiscard]] Objections check_term(const TieRecord& tie, const std::string& name, const Bounded& said) const {
@@ -110,7 +115,8 @@ struct Arc {
         }
         const std::string what = fmt::format("the first-order term of {} ('{}')", name, tie.what);
         Objections wrong = check_said(what, said, *found);
-        if (wrong && tie.what == "opening") { // keys of the rule least_negative are kept with the other sign
+        const bool of_keys = tie.what == "opening" || tie.what == "start";
+        if (wrong && of_keys) { // those of the rule least_negative are kept with the other sign
             wrong = check_said(what, {-said.value, said.bound}, *found);
         }
         return wrong;

@@ -287,6 +287,12 @@ class Replay {
         }
         go_to_stored(std::move(start), line.where);
         if (here_.state) {
+            for (TieRecord tie : arcs.front()->ties) {
+                if (tie.what == "start") {
+                    tie.what = "opening";
+                    here_.said.push_back(std::move(tie));
+                }
+            }
             judged(asked([&] { return check_start(here_, *records_.start); }), line.where);
         }
     }

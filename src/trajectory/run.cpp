@@ -71,9 +71,9 @@ Result<bool> choose_contacts(State& state, Prover& prover, const TieSettling& ti
 }
 
 /// Proves what a state says: a vertex at which no pair overlaps. Where ties are settled, and unless the run is
-/// `resumed`, a hyperstatic start keeps (in `state.contacts`) those contacts that carry the load for small eps > 0,
-/// chosen from its list and from the touching pairs outside the list. Failures: `overlap`, those of `Prover::vertex`
-/// and `Prover::gaps`, and of the choice.
+/// `resumed`, a hyperstatic start keeps (in `state.contacts`) those contacts of its list that carry the load for small
+/// eps > 0. Where a run may not choose, another list whose touching pairs overlap at first order is joined by these,
+/// and keeps as many. Failures: `overlap`, those of `Prover::vertex` and `Prover::gaps`, and of the choice.
 Result<SegmentStart> start_segment(State& state, Prover& prover, const TieSettling& ties, bool resumed) {
     prover.start_at(state.packing);
     bool chosen = false;
@@ -198,13 +198,15 @@ std::optional<Failure> Run::first_equilibrium(const SegmentStart& start) {
         return located(decided.failure(), "start");
     }
     const OpeningDecision& decision = decided.value();
+    if (vertex_->perturbed) { // what the record of the first arc says else is decided at its end
+        vertex_->perturbed->zeros = decision.zeros;
+        std::vector<TieDecision>& log = vertex_->perturbed->statics.log;
+        std::erase_if(log, [](const TieDecision& tie) { return tie.what == "force"; });
+        std::ranges::for_each(log, [](TieDecision& tie) { tie.what = "start"; });
+    }
     if (decision.opening) {
         const Contact& opens = vertex_->structure.contacts()[decision.opening->contact.index()];
         return rearrange(*decision.opening, kind_of(opens, decision.opening->infinitesimal), load());
-    }
-    if (vertex_->perturbed) {
-        vertex_->perturbed->zeros = decision.zeros;
-        vertex_->perturbed->statics.log.clear();
     }
     recorder_.count({DecisionKind::equilibrium, decision.margin, decision.rung, decision.perturbed || start.chosen});
     return report(0);

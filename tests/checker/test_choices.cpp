@@ -1,4 +1,5 @@
 // Runs under ties = "choose", re-checked from their records; a forged choice must be found.
+#include "support/course.hpp"
 #include "support/mirror.hpp"
 #include "support/played.hpp"
 
@@ -9,9 +10,24 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Plays one segment under `choose` into a folder; how it ends does not matter.
-void play(const State& state, int equilibria, const fs::path& folder, std::uint64_t seed = 1) {
+void play(const State& state, int equilibria, const fs::path& folder, std::uint64_t seed = 1, bool with_start = false) {
     RunOptions options{.ties = TiePolicy::choose, .ties_seed = seed};
-    (void)played::into(folder, state, {towards(equilibria)}, options);
+    (void)played::into(folder, state, {towards(equilibria)}, options, with_start);
+}
+
+/// A lattice with the list that other changed radii keep of its contacts, under a load at which some force is negative.
+State with_a_foreign_list(const State& lattice, double stress) {
+    State state = lattice;
+    state.contacts = crafted::follow_load(lattice, +1, 1, crafted::Ties::choose, 10).states.at(0).contacts;
+    state.load.stress[1] = stress;
+    return state;
+}
+
+/// The first arc opens a contact at the start, and nothing of the run is left undecided.
+RunVerification proved_from_start(const fs::path& folder) {
+    const std::string events = scratch::read(folder / "events.jsonl");
+    BOOST_TEST(events.substr(0, events.find('\n')).find("\"equilibrium\":0,") != std::string::npos);
+    return played::proved(folder);
 }
 
 /// The entry of a record that names an exchange of the list, with the braces; empty: none does.
@@ -253,4 +269,44 @@ BOOST_AUTO_TEST_CASE(an_exchange_for_a_pair_that_parts_at_second_order_is_refuse
                                      key + entry + (events[events.find(key) + key.size()] == ']' ? "" : ","))
                            : altered(folder, "events.jsonl", "}\n", ",\"perturbed\":[" + entry + "]}\n"),
                     "second derivative");
+}
+
+/// A list that is given stays: pairs that overlap at first order are watched (C1 g).
+BOOST_AUTO_TEST_CASE(a_start_at_which_touching_pairs_overlap_at_first_order_is_replayed_and_a_forged_one_refused) {
+    const scratch::Folder scratch_folder;
+    for (const int columns : {3, 4}) {
+        const State lattice = crafted::triangular(columns, columns - 1);
+        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+            const fs::path folder = scratch_folder / fmt::format("{}-{}", columns, seed);
+            play(with_a_foreign_list(lattice, 3), 2, folder, seed, true);
+            proved_from_start(folder);
+            // The rule asks for the sign of every force: those that vanish at the start may bear load after the arc.
+            const fs::path other = scratch_folder / fmt::format("{}-{}-least", columns, seed);
+            RunOptions options{.rule = OpeningRule::least_negative, .ties = TiePolicy::choose, .ties_seed = seed};
+            (void)played::into(other, with_a_foreign_list(lattice, 3), {towards(2)}, options, true);
+            proved_from_start(other);
+        }
+    }
+    const fs::path folder = scratch_folder / "3-2";
+    // From the whole lattice the run has to choose a list with which no pair overlaps.
+    write_state(folder / "start.json", crafted::triangular(3, 2));
+    forger::seal(folder);
+    played::refuted(verify_run(folder), "touch at the start");
+}
+
+BOOST_AUTO_TEST_CASE(what_is_chosen_to_open_at_a_start_is_replayed_and_a_forged_choice_refused) {
+    const scratch::Folder folder;
+    State state = crafted::mirror_forces();
+    state.perturbation.emplace();
+    state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
+    state.load.stress[1] = 0.25; // both have left the bottom at 0.5
+    play(state, 1, folder, 1, true);
+    BOOST_TEST(proved_from_start(folder).choices_checked == 1);
+    const std::string loads = "\"choice\":\"infinitesimal loads\"";
+    played::refuted(altered(folder, "events.jsonl", loads, "\"choice\":\"names\""), "comes first");
+    played::refuted(altered(folder, "events.jsonl", "\"against_first_order\":[-0.0", "\"against_first_order\":[1.0"),
+                    "first-order term");
+    // At the end of the arc what opened is no contact.
+    played::refuted(altered(folder, "events.jsonl", "\"decision\":\"start\"", "\"decision\":\"opening\""),
+                    "of which there is none");
 }

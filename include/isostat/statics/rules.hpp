@@ -41,6 +41,7 @@ constexpr const char* to_string(TieChoice choice) {
 struct TieDecision {
     /// - "force": the force in `chosen` vanishes; `first` is its first-order term (no `against`);
     /// - "opening": two contacts that the rule orders alike; first-order terms of both keys;
+    /// - "start": as "opening", at the start of a run, in the record of the first arc;
     /// - "limit": two forces that vanish at one load; first-order terms of the two loads;
     /// - "zero all along": a force and its slope vanish; `first`: its first-order term at the limit (no `against`);
     /// - "gap": `against` touches where `chosen` closes (or touches since before); `other` is its first-order gap;

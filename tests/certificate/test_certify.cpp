@@ -98,7 +98,7 @@ State shaken(State state, double size, unsigned seed) {
 /// that presses it down.
 State between_two(double h) {
     const double side = std::sqrt(1 + h * h) * 2 - 1;
-    State state = crafted::held_by_two({side, side, 1}, {-2, 0, 2, 0, 0, 2 * h});
+    State state = without_walls::held_by_two({side, side, 1}, {-2, 0, 2, 0, 0, 2 * h});
     state.load.stress = {1, 1};
     state.load.reference_length = {1, 1};
     state.load.disk_force = {0, 0, 0, 0, 0.25, -1};

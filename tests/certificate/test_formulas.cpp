@@ -173,7 +173,8 @@ BOOST_AUTO_TEST_CASE(pairs_beyond_the_list_are_as_far_as_its_reach_less_the_way_
     // nearer than that. Disk 6 carries so little that the vertex is known in double-double, hence far better than
     // 1e-10.
     State state;
-    state.packing = free_grains({3, 3, 2, 1, 3, 3, 2}, {-3, 0, 3, 0, 0, 4 + 1e-10, 0, 0, -3, -90, 3, -90, 0, -86});
+    state.packing =
+        without_walls::free_grains({3, 3, 2, 1, 3, 3, 2}, {-3, 0, 3, 0, 0, 4 + 1e-10, 0, 0, -3, -90, 3, -90, 0, -86});
     state.packing.fixed = {1, 1, 0, 1, 1, 1, 0};
     state.load.disk_force = {0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0, 0, -1e-25};
     state.contacts = {pair(0, 2), pair(1, 2), pair(4, 6), pair(5, 6)};
@@ -253,8 +254,8 @@ BOOST_AUTO_TEST_CASE(true_stresses_on_a_sphere_press_on_the_areas_of_the_true_ve
 
 BOOST_AUTO_TEST_CASE(periods_in_space_are_stretched_as_little_as_C4_counts_on) {
     oracle::Random random(8);
-    Packing packing = free_grains({1}, {}, 3); // one sphere, which has no extent
-    double nearest = 0;                        // of the least stretch found to the bound
+    Packing packing = without_walls::free_grains({1}, {}, 3); // one sphere, which has no extent
+    double nearest = 0;                                       // of the least stretch found to the bound
     for (int trial = 0; trial < 200; ++trial) {
         packing.q.assign(9, 0.0);
         for (std::size_t a = 0; a < 3; ++a) {

@@ -73,7 +73,7 @@ Packing pair_at(double x, double y, double r0, double r1) {
 
 /// Spheres each of which touches one before it, or nearly, without overlap; `axes` that they spread along.
 Packing spheres_that_cling(Random& random, int axes) {
-    Packing packing = crafted::free_grains({1}, {}, 3);
+    Packing packing = without_walls::free_grains({1}, {}, 3);
     packing.q = {0, 0, 0};
     const double ratio = random.integer(2) == 0 ? 1 : random.real(1, 4);
     for (int tries = 0; tries < 400; ++tries) {

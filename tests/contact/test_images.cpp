@@ -180,7 +180,7 @@ BOOST_AUTO_TEST_CASE(one_contact_has_one_name) {
 BOOST_AUTO_TEST_CASE(a_nearest_pair_that_no_list_reaches_is_far) {
     // One disk that touches its image; the next image is a period further, in a cell that leans over `lean` heights.
     const auto next_pair = [](double lean) {
-        Packing packing = crafted::free_grains({1}, {0, 0, 2, 100, 100 * lean});
+        Packing packing = without_walls::free_grains({1}, {0, 0, 2, 100, 100 * lean});
         packing.cell = {{true, true}, {true, true}, {true}, 0};
         return isostat::other_pairs(packing, {cells::across(0, 0, 1, 0)});
     };
@@ -220,7 +220,7 @@ BOOST_AUTO_TEST_CASE(pairs_of_clumps_are_all_but_those_of_one_body) {
 }
 
 BOOST_AUTO_TEST_CASE(a_member_and_the_image_of_another_are_a_pair) {
-    Packing p = crafted::free_grains({1, 1}, {5, 5, 6, 5, 3.1, 9, 0});
+    Packing p = without_walls::free_grains({1, 1}, {5, 5, 6, 5, 3.1, 9, 0});
     p.cell.repeat();
     p.cell.move(true, true);
     p.bars = {{0, 1, 1}};

@@ -163,7 +163,7 @@ inline std::optional<State> strut(Random& random) {
     const double right = r[1] + r[2];
     const double c1 = std::sqrt(1 - delta * delta);
     const double s2 = delta * left / right;
-    State state = ::crafted::held_by_two(
+    State state = ::without_walls::held_by_two(
         {r[0], r[1], r[2]}, {0, 0, left * c1 + right * std::sqrt(1 - s2 * s2), 0, left * c1, left * delta});
     state.load.infinitesimal = {0, 0, 0, 0, random.real(-1, 1), random.real(-1, 1)};
     state.load.stress = {1, 1};

@@ -144,7 +144,8 @@ BOOST_AUTO_TEST_CASE(the_order_of_gaps_is_that_of_3000_bits) {
 
 BOOST_AUTO_TEST_CASE(gaps_of_far_and_tiny_disks_are_ordered) {
     // The difference of the two gaps is far below the rounding of either, or is a denormal.
-    const Packing packing = ::crafted::free_grains({1, 1, 1, 1}, {1e15, 0, 1e15 + 2, 0, 0, 0, 2 + 0x1p-51, 0x1p-1060});
+    const Packing packing =
+        without_walls::free_grains({1, 1, 1, 1}, {1e15, 0, 1e15 + 2, 0, 0, 0, 2 + 0x1p-51, 0x1p-1060});
     const GapOrder order(packing);
     const auto item = [&](int i, int j) { return order.item({ContactKind::disk_disk, i, j}); };
     BOOST_TEST(order.compare(item(0, 1), item(2, 3)) < 0);
@@ -204,6 +205,6 @@ BOOST_AUTO_TEST_CASE(peeling_agrees_with_excluding_contacts_for_every_initial_pa
 }
 
 BOOST_AUTO_TEST_CASE(two_disks_at_one_point_are_refused) {
-    const Packing packing = ::crafted::free_grains({1, 2}, {0.5, 0.5, 0.5, 0.5});
+    const Packing packing = without_walls::free_grains({1, 2}, {0.5, 0.5, 0.5, 0.5});
     BOOST_CHECK_THROW((void)peel(packing, {{ContactKind::disk_disk, 0, 1}}), isostat::Error);
 }

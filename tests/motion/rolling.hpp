@@ -15,7 +15,7 @@ struct RollingDisk {
     isostat::Load load;
 
     RollingDisk() {
-        packing = free_grains({1}, {});
+        packing = without_walls::free_grains({1}, {});
         packing.fixed = {1};
         load.disk_force = {0, 0};
         beside(start_angle, 1);

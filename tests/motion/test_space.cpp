@@ -24,7 +24,7 @@ struct RowOfImage {
     Contact pair;
 
     RowOfImage(int dimension, int m, oracle::Random& random) {
-        packing = crafted::free_grains({1, 1}, {}, dimension);
+        packing = without_walls::free_grains({1, 1}, {}, dimension);
         packing.cell.repeat();
         packing.cell.move(true, true);
         packing.q.resize(packing.coordinate_count());
@@ -153,7 +153,7 @@ BOOST_AUTO_TEST_CASE(coefficients_in_cells_of_spheres_are_on_a_grid_of_their_own
 /// sqrt 3.
 BOOST_AUTO_TEST_CASE(the_tube_holds_the_circle_of_a_sphere_in_a_groove) {
     for (const double angle : {0.3, 0.8, 1.2, 2.5}) {
-        Packing packing = crafted::free_grains(
+        Packing packing = without_walls::free_grains(
             {1, 1, 1}, {0, 0, -1, 0, 0, 1, std::sqrt(3.0) * std::cos(angle), std::sqrt(3.0) * std::sin(angle)}, 3);
         packing.fixed = {1, 1, 0};
         snap_to_grid(packing);

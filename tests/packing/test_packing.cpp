@@ -166,7 +166,7 @@ BOOST_AUTO_TEST_CASE(valid_packings_pass) {
 }
 
 BOOST_AUTO_TEST_CASE(a_cell_of_spheres_keeps_its_shape_where_none_touches_itself_along_a_period_at_rest) {
-    Packing packing = crafted::free_grains({1}, {0, 0, 0, 3, 2.5, 2, 0, 0, 0}, 3);
+    Packing packing = without_walls::free_grains({1}, {0, 0, 0, 3, 2.5, 2, 0, 0, 0}, 3);
     packing.cell.repeat();
     packing.cell.keep_shape();
     is_valid(packing);

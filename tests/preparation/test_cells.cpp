@@ -191,10 +191,10 @@ BOOST_AUTO_TEST_CASE(too_few_or_too_many_disks_are_refused) {
 BOOST_AUTO_TEST_CASE(a_way_down_that_flattens_the_cell_ends_with_words) {
     // Found by the search for contradictions: a large stress along y shears and flattens a cell of four disks.
     Packing start =
-        crafted::free_grains({2.7876204452241971, 0.65472544046501935, 1.0015561869148328, 3.2929607891851669},
-                             {5.8328524909703203, 3.6381445016534553, 3.5319556976286353, 6.2488283970903336,
-                              8.9283998854660425, 1.3884984014368156, -0.24170659535067671, 4.5402521862358807,
-                              12.149213315945422, 6.0596347498486081, -2.7414239873924848});
+        without_walls::free_grains({2.7876204452241971, 0.65472544046501935, 1.0015561869148328, 3.2929607891851669},
+                                   {5.8328524909703203, 3.6381445016534553, 3.5319556976286353, 6.2488283970903336,
+                                    8.9283998854660425, 1.3884984014368156, -0.24170659535067671, 4.5402521862358807,
+                                    12.149213315945422, 6.0596347498486081, -2.7414239873924848});
     start.cell = {{true, true}, {true, true}, {true}, 2};
     PreparationOptions options{.stress = 0.50053308055745815, .ratio = 3.7831519571624725};
     PreparationReport report;

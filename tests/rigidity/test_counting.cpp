@@ -209,7 +209,7 @@ BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded, *b
         BOOST_TEST((proved.evidence() == RegularityEvidence::elimination));
         BOOST_TEST(&proved.matrix() == &regular.unproved().matrix());
         // Disk 2 between two fixed ones in one line, tilted: singular, but not by its pattern.
-        const State strut = crafted::held_by_two({1, 1, 1}, {-2, -1, 2, 1, 0, 0});
+        const State strut = without_walls::held_by_two({1, 1, 1}, {-2, -1, 2, 1, 0, 0});
         auto singular = required(RankProof::begin(strut.packing, strut.contacts));
         BOOST_TEST(!singular.is_regular());
         BOOST_TEST_REQUIRE(!singular.conclude().ok());

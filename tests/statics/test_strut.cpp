@@ -286,10 +286,10 @@ BOOST_AUTO_TEST_CASE(the_ends_of_a_strut_whose_holds_turned_back_are_ordered_by_
         const auto force = [&](const Contact& c) { return v.statics.force(find(state, c), v.sigma()); };
         BOOST_TEST_REQUIRE((force(pair(0, 1)) - force(left(0))).negative());
         const ZeroHolds aside{ContactId(), {find(state, held(1)), find(state, held(3))}};
-        const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, aside, 0);
-        BOOST_TEST_REQUIRE(decision.ok(), why(decision));
-        BOOST_TEST_REQUIRE(decision.value().opening.has_value());
-        BOOST_TEST((v.contact(decision.value().opening->contact) == (g > 0 ? left(0) : right(1))), "g = " << g);
+        const OpeningDecision decision =
+            required(decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, aside, 0));
+        BOOST_TEST_REQUIRE(decision.opening.has_value());
+        BOOST_TEST((v.contact(decision.opening->contact) == (g > 0 ? left(0) : right(1))), "g = " << g);
     }
 }
 

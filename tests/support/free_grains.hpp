@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace crafted {
+namespace without_walls {
 
 /// `q`: the centres, then the lengths and tilts of a cell, which may be left out.
 inline isostat::Packing free_grains(std::vector<double> radius, std::vector<double> q, int dimension = 2) {
@@ -30,4 +30,4 @@ inline isostat::State held_by_two(std::vector<double> radius, std::vector<double
     return state;
 }
 
-} // namespace crafted
+} // namespace without_walls

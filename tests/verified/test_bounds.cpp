@@ -98,7 +98,7 @@ bool check(const State& state, const std::vector<double>& force) {
 
 /// A free disk between two fixed ones whose directions differ from opposite by `angle`: sigma_min ~ angle / sqrt 2.
 State nearly_collinear(double angle) {
-    return crafted::held_by_two({1, 1, 1}, {-2, 0, 2 * std::cos(angle), 2 * std::sin(angle), 0, 0});
+    return without_walls::held_by_two({1, 1, 1}, {-2, 0, 2 * std::cos(angle), 2 * std::sin(angle), 0, 0});
 }
 
 isostat::sparse::Matrix<double> compressed(const Eigen::MatrixXd& dense) {

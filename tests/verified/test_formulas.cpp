@@ -85,8 +85,8 @@ Real residual_of(const State& state) {
 /// `tilt`. Singular values: some angle / sqrt 2, and sqrt 2.
 State between_two(double angle, double tilt, double free = 1) {
     const double d = 1 + free;
-    return crafted::held_by_two({1, 1, free}, {-d * std::cos(tilt), -d * std::sin(tilt), d * std::cos(tilt + angle),
-                                               d * std::sin(tilt + angle), 0, 0});
+    return without_walls::held_by_two({1, 1, free}, {-d * std::cos(tilt), -d * std::sin(tilt),
+                                                     d * std::cos(tilt + angle), d * std::sin(tilt + angle), 0, 0});
 }
 
 /// The unit vector from disk k to disk 2 at its place plus `shift`: the gradient of their gap.
@@ -313,7 +313,7 @@ BOOST_AUTO_TEST_CASE(what_a_newton_step_leaves_is_counted_as_V4_says) {
     check_above(vertex.step_radius, (rest + product * eta) * (1 - Real("1e-6")), 0.01);
     check_above(vertex.radius, eta * (1 + product) * (1 - Real("1e-6")), 0.01);
     // Gaps that are exactly 0: what remains is 2^-98 D of each.
-    const State exact = crafted::held_by_two({3, 3, 2}, {-3, 0, 3, 0, 0, 4});
+    const State exact = without_walls::held_by_two({3, 3, 2}, {-3, 0, 3, 0, 0, 4});
     const Known at(exact);
     const VertexEnclosure here = enclose_vertex(exact.packing, at.structure, at.factorisation, at.inverse);
     BOOST_TEST_REQUIRE((here.verdict == Verdict::proved));

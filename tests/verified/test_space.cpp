@@ -11,7 +11,7 @@
 #include "verified/vertex_bounds.hpp"
 
 using namespace isostat;
-using crafted::free_grains;
+using without_walls::free_grains;
 
 namespace {
 

@@ -123,7 +123,7 @@ inline std::vector<std::string> lines_of(std::string text) {
 /// Neither blank nor a comment.
 inline bool has_content(const std::string& line, const std::string& blanks = " \t\r") {
     const std::size_t first = line.find_first_not_of(blanks);
-    return first != std::string::npos && line[first] != '#';
+    return first != std::string::npos && line[first] != '#' && line[first] != '%';
 }
 
 inline std::string rows_differ(std::size_t read, std::size_t counted) {

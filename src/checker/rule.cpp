@@ -234,8 +234,8 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
     if (rule == "random" && run.rule_seed) {
         return check_draw(place, event, opened, *run.rule_seed, decision.candidates);
     }
-    if (rule == "random") {
-        return Objection{false, "the draws of the rule 'random' are not checked, only that the force is negative",
+    if (rule != "most_negative" && rule != "least_negative" && rule != "least_index") {
+        return Objection{false, fmt::format("the rule '{}' is not checked, only that the force is negative", rule),
                          true};
     }
     return {};

@@ -16,7 +16,7 @@ class SolveSchedule;
 /// column exchanged since (product form, as in the simplex method; proofs/exchange.md). Columns that were not exchanged
 /// keep the values of the base. *Nothing is proved of its results*: they are guesses whose residuals are then bounded
 /// with the true matrix. A value; copies share the factors, and several threads may use them, except copies made by
-/// `of_block`, which share the memory that solves use.
+/// `of_block` or for few solves, which share the memory that solves use.
 class ApproximateInverse {
   public:
     /// Factorises `matrix` (square). `symbolic` is the analysis of its pattern

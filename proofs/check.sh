@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Everything in proofs/ that a machine can check:
 #   bash proofs/check.sh [BUILD]
-# The links of the pages; the numbers in the code, each with a statement or a reason (constants.py); with Coq and MathComp installed the theorems, with what Print Assumptions says of each; and, when BUILD (a build
+# The links of the pages; the numbers in the code, each with a mark that says where the number comes from (constants.py); with Coq and MathComp installed the theorems, with what Print Assumptions says of each; and, when BUILD (a build
 # folder with the examples) is given, certificates that its program writes for packings that it prepares.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 python3 proofs/check_links.py
 bash proofs/check_links_test.sh
-python3 proofs/constants.py --where
+python3 proofs/constants.py
 bash proofs/constants_test.sh
 if ! command -v coqc >/dev/null || [ ! -d "$(coqc -where)/user-contrib/mathcomp/algebra_tactics" ] || ! ocamlfind query zarith >/dev/null 2>&1; then
   echo "proofs/coq: SKIPPED, no theorem was checked: Coq, MathComp, OCaml or Zarith is not installed (Debian: ${isostat_proof_packages[*]})"

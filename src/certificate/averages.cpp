@@ -11,7 +11,7 @@ namespace isostat {
 namespace {
 
 double mean_of_ends(const Interval& force) {
-    return 0.5 * force.lower + 0.5 * force.upper;
+    return 0.5 * force.lower + 0.5 * force.upper; // exact: a half
 }
 
 /// Held coordinates carry no force between grains.
@@ -84,7 +84,7 @@ ForceAverages force_averages(const State& state, const Certification& truth) {
 }
 
 std::vector<std::pair<double, double>> force_distribution(const State& state, const Certification& truth) {
-    constexpr double width = 0.25;
+    constexpr double width = 0.25; // choice: width of a bin of P(f), which no proof reads
     std::vector<double> forces;
     double sum = 0;
     for (std::size_t l = 0; l < truth.finite.size(); ++l) {
@@ -100,7 +100,7 @@ std::vector<std::pair<double, double>> force_distribution(const State& state, co
     const double largest = *std::ranges::max_element(forces) / mean;
     std::vector<std::pair<double, double>> bins(static_cast<std::size_t>(largest / width) + 1);
     for (std::size_t k = 0; k < bins.size(); ++k) {
-        bins[k].first = (static_cast<double>(k) + 0.5) * width;
+        bins[k].first = (static_cast<double>(k) + 0.5) * width; // exact: a half
     }
     for (const double force : forces) { // a negative force, of no equilibrium, is in the first bin
         const auto k = static_cast<std::size_t>(std::max(0.0, force / mean / width));

@@ -206,6 +206,7 @@ bool Prover::claim_regular(int rows) {
 
 /// Along mechanisms that the load reaches (U8). The claims leave room for a checker with other bounds.
 void Prover::claim_minimum() {
+    // choice: room of the claim of a minimum for a checker with other bounds, which checks it
     constexpr double room = 16;
     if (!state_.load.infinitesimal.empty()) {
         return;
@@ -301,6 +302,7 @@ bool Prover::put_on_grid() {
     }
     stored_ = std::move(made.value());
     const int d = stored_->packing.dimension;
+    // cells.md C2, offsets that the grid allows for
     const double weight = 2 + 3 * (d + 1); // |delta gap| for offsets up to 3, component by component
     rounded_away_ = d * weight * moved;
     return true;
@@ -308,8 +310,8 @@ bool Prover::put_on_grid() {
 
 /// Where the gaps are visibly open, the stored place says less than the end of Newton's method. Either will do.
 std::unique_ptr<Centre> Prover::downhill() const {
-    constexpr double visible = 1e-10;
-    constexpr double reach = 0.1; // of the smallest radius
+    constexpr double visible = 1e-10; // guess: when a centre is sought by Newton
+    constexpr double reach = 0.1;     // of the smallest radius; guess: the centre may be any doubles (true_vertex.md)
     Packing end = stored_->packing;
     end.cell.keeps_shape = false; // only the period that moves was asked about
     long steps = 0;
@@ -464,6 +466,7 @@ bool Prover::prove_gaps() {
         }
         // Pairs that are not listed: their gap changes by at most so much times the distance to the true vertex.
         const double weight = far_weight(centre_->packing, pairs.reach);
+        // true_vertex.md V5 (other gaps), rounding of the difference
         GapsClaim claim{(pairs.reach - weight * vertex_->distance()) * (1 - 0x1p-50), Contact(), vertex_->rung()};
         claim.smallest = arcs.below(claim.smallest);
         Interval nearest{infinity, infinity};
@@ -487,6 +490,7 @@ bool Prover::prove_gaps() {
             }
         }
         // Another pair may be nearer than the one named, by more than the claim leaves open.
+        // checker.md K9, half of what the claim leaves open
         const double room = 0x1p-47 * largest_length(state_.packing);
         const bool unclear = std::ranges::any_of(
             gaps, [&](const Interval& h) { return h != nearest && h.lower < nearest.upper - room; });
@@ -505,7 +509,7 @@ bool Prover::prove_gaps() {
 
 /// The end is not known to a millionth of it, or of the largest stress of the load.
 bool is_vague(const LoadEndClaim& end, double largest) {
-    constexpr double millionth = 1e-6;
+    constexpr double millionth = 1e-6; // cost: a vaguer end of the interval is asked for again with more digits
     const Interval& at = end.stress;
     return !end.unbounded &&
            !(at.upper - at.lower <= millionth * std::max({std::abs(at.lower), std::abs(at.upper), largest}));
@@ -514,7 +518,7 @@ bool is_vague(const LoadEndClaim& end, double largest) {
 /// Climbs until both ends are proved, and well known where the rungs reach that. So many forces that double-double does
 /// not order are as a rule copies of one another, which no digits order: the end then stays undecided.
 void Prover::prove_load_interval() {
-    constexpr int copies = 100;
+    constexpr int copies = 100; // cost: then the end of the interval is undecided
     std::optional<LoadIntervalClaim>& claim = result_.claims.load_interval;
     const double stresses = largest(state_.load.stress);
     std::string open;

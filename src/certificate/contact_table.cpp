@@ -57,6 +57,7 @@ std::string contact_table(const State& state, const Certification& truth) {
                             gap(packing, contact));
         if (l < truth.finite.size()) {
             const Interval& f = truth.finite[l];
+            // 0.5: exact: the middle of an interval, for people
             text += fmt::format(",{},{},{}", 0.5 * f.lower + 0.5 * f.upper, f.lower, f.upper);
         } else {
             text += ",,,";

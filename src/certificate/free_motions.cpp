@@ -14,8 +14,8 @@ namespace isostat {
 
 namespace {
 
-constexpr double shift = 0x1p-36;
-constexpr int iterations = 4;
+constexpr double shift = 0x1p-36; // guess: shift of the inverse iteration for the motions that keep all contacts
+constexpr int iterations = 4;     // guess: steps of the inverse iteration
 using Sparse = Eigen::SparseMatrix<double>;
 
 /// k degrees of freedom that move far in the motions that keep all contacts: the rows of an orthonormal basis of these

@@ -15,12 +15,15 @@
 #include <functional>
 #include <span>
 
+// exact: all other numbers of this file: coordinates of a body
+
 namespace isostat {
 
 namespace {
 
 using roundoff::u;
 
+// arcs.md A8, sums of non-negative terms are raised by it
 constexpr double up = 1 + 1e-9; // sums over coordinates and products of bounds, three deep (B1)
 
 /// Velocities on which one held coordinate moves at the rate 1 and no other row changes.
@@ -42,6 +45,7 @@ HeldMotion motion_of(const Vertex& vertex, std::size_t slot) {
     double residual = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const auto rate = gap_gradient(vertex.packing, contacts[l]).rate(motion.v, l == slot ? -1.0 : 0.0);
+        // clumps.md U8, a product of a row with velocities
         const double bound = std::abs(rate.value) + 24 * u * rate.terms;
         residual += bound * bound;
     }
@@ -53,7 +57,7 @@ double norm_of(const std::vector<double>& x) {
     return std::sqrt(Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)).squaredNorm()) * up;
 }
 
-constexpr std::size_t most_mechanisms = 256; // of which eigenvalues are said
+constexpr std::size_t most_mechanisms = 256; // cost: eigenvalues of more are not said
 
 /// Eigenvalues x of (form - x columns^T columns), ascending, whatever form is within `error`, entry by entry, and the
 /// columns within `off` (Frobenius norm): in the basis that makes both forms diagonal, as it is computed, by Weyl's
@@ -67,6 +71,7 @@ std::vector<Enclosure> eigenvalues(const Eigen::MatrixXd& form, const Eigen::Mat
     const Eigen::MatrixXd& q = solver.eigenvectors();
     const Eigen::VectorXd& values = solver.eigenvalues();
     const auto norm = [](const Eigen::MatrixXd& m) { return m.cwiseAbs().rowwise().sum().maxCoeff(); };
+    // bounds.md V0, two products with k additions each, doubled
     const double roundings = 4 * static_cast<double>(columns.rows() + 2) * u;
     const Eigen::MatrixXd size = q.cwiseAbs();
     const Eigen::MatrixXd rest = q.transpose() * form * q - Eigen::MatrixXd(values.asDiagonal());
@@ -108,7 +113,7 @@ class HeldForm {
         const Enclosure least = eigenvalues(form_, error_, Eigen::MatrixXd::Identity(k, k), 0).front();
         const double curvature = (least.value - least.radius) / up;
         const double step = newton_step();
-        if (!(curvature > 0) || !(step < 0.49 * reach) || !(off * up < reach)) {
+        if (!(curvature > 0) || !(step < 0.49 * reach) || !(off * up < reach)) { // clumps.md U8, below a half
             return {};
         }
         nearer_ = 2 * step * fastest() * up;
@@ -144,6 +149,7 @@ class HeldForm {
             }
             sum.size += std::abs(share) * m.size * up;
             sum.residual +=
+                // bounds.md V0, products and sums
                 std::abs(share) * (m.residual + 16 * static_cast<double>(motions_.size()) * u * m.size) * up;
         }
         const double fastest = Eigen::Map<const Eigen::ArrayXd>(sum.v.data(), std::ssize(sum.v)).abs().maxCoeff();
@@ -155,7 +161,9 @@ class HeldForm {
         }
         find_form();
         const double slower = slowest / fastest;
+        // clumps.md U4, roundings of the quotient
         const double off = error_(0, 0) + std::abs(form_(0, 0)) * (1 - slower * slower + 8 * u);
+        // bounds.md V0, roundings of the squares and of the quotient
         return {form_(0, 0) / (fastest * fastest), off * (1.001 / (slowest * slowest))};
     }
 
@@ -172,18 +180,19 @@ class HeldForm {
             strain_ = std::max(strain_, (way + vertex_.enclosure.distance()) / length * up);
         }
         force_changes_ = change_of(force_size_, norm_of(load_.external_force(vertex_.packing)));
-        return sigma_min_ > 0 && strain_ < 1.0 / 64;
+        return sigma_min_ > 0 && strain_ < 1.0 / 64; // clumps.md U8, the strain that is allowed
     }
     /// Of forces of that norm, which balance a load of that norm, within the way: a load under true stresses is one or
     /// two lengths, and changes by less than 2.5 times their strain.
     [[nodiscard]] double change_of(double forces, double load) const {
+        // clumps.md U8, what a load under true stresses changes by
         return (lipschitz_ * way_ * forces + 2.5 * strain_ * load) / sigma_min_ * up;
     }
     [[nodiscard]] bool stay_in_sectors(double way) const {
         const double distance = vertex_.enclosure.distance();
         const double moved = (way + distance) * up;
         return !arcs_.any() ||
-               (distance < way / 16 && moved < arcs_.farthest() &&
+               (distance < way / 16 && moved < arcs_.farthest() && // clumps.md U9, the stored place
                 std::ranges::all_of(contacts_, [&](const Contact& contact) { return arcs_.faces(contact, moved); }));
     }
     [[nodiscard]] Enclosure force(std::size_t l) const {
@@ -206,7 +215,7 @@ class HeldForm {
         const Eigen::Index k = form_.rows();
         const Eigen::MatrixXd inverse = form_.inverse();
         const Eigen::MatrixXd size = inverse.cwiseAbs();
-        const double roundings = static_cast<double>(k + 4) * u;
+        const double roundings = static_cast<double>(k + 4) * u; // bounds.md V0, a product with k additions
         Eigen::VectorXd multiplier(k);
         Eigen::VectorXd open(k);
         for (Eigen::Index i = 0; i < k; ++i) {
@@ -217,6 +226,7 @@ class HeldForm {
         const Eigen::MatrixXd rest = (Eigen::MatrixXd::Identity(k, k) - inverse * form_).cwiseAbs() +
                                      size * (error_ + roundings * form_.cwiseAbs());
         const Eigen::VectorXd step = (inverse * multiplier).cwiseAbs() + size * open;
+        // clumps.md U8, the defect of the inverse
         return rest.norm() * up < 0.25 ? step.norm() * up : roundoff::infinity;
     }
 
@@ -262,7 +272,7 @@ class HeldForm {
                 at(i, 0) = motions_[static_cast<std::size_t>(i)].v[c];
             }
             const double part = -wall.stress * wall.length * wall.other / vertex_.packing.q[c];
-            add_term(at, 1, part, 4 * strain_ * std::abs(part));
+            add_term(at, 1, part, 4 * strain_ * std::abs(part)); // clumps.md U8, what a load over a length changes by
         }
     }
 
@@ -272,7 +282,8 @@ class HeldForm {
         Eigen::VectorXd off(at.rows());
         for (Eigen::Index i = 0; i < at.rows(); ++i) {
             const HeldMotion& m = motions_[static_cast<std::size_t>(i)];
-            off(i) = weight * (velocity_error(m) + 16 * u * m.size) * up; // a row is a sum of ten terms at most
+            // clumps.md U8, ten terms of a separation
+            off(i) = weight * (velocity_error(m) + 16 * u * m.size) * up;
         }
         const Eigen::VectorXd size = at.rowwise().norm() * up;
         const Eigen::MatrixXd moved = (size + off) * (size + off).transpose();
@@ -297,6 +308,7 @@ class HeldForm {
             open(static_cast<Eigen::Index>(i)) = slope.radius + changes;
         }
         const Eigen::VectorXd rate = -form_.ldlt().solve(multiplier);
+        // bounds.md V0, a product with k additions and the last one
         const double roundings = static_cast<double>(form_.rows() + 4) * u;
         const Eigen::VectorXd size = form_.cwiseAbs() * rate.cwiseAbs() + multiplier.cwiseAbs();
         const Eigen::VectorXd rest =
@@ -403,6 +415,7 @@ class HeldForm {
     bool follows_ = load_.kind == LoadKind::true_stress;
     double lipschitz_;
     ArcBodies arcs_;
+    // arcs.md A8, a product of two differences over a contact, and N additions
     double roundings_ = (static_cast<double>(contacts_.size()) + 32) * u; // relative, of sums over the contacts
     double force_size_;
     std::vector<HeldMotion> motions_;
@@ -414,7 +427,7 @@ class HeldForm {
 /// stress.
 double way_to_zero(double value, double rate, double terms, int direction) {
     const double falls = -direction * rate;
-    return falls > 0x1p-40 * terms ? value / falls : roundoff::infinity;
+    return falls > 0x1p-40 * terms ? value / falls : roundoff::infinity; // message: rates below it are roundings
 }
 
 /// Rates of the forces on such a motion at a fixed stress: H f' + H' f = F', where normals turn with the relative
@@ -574,6 +587,8 @@ Enclosure least_curvature(const Vertex& vertex, const Load& load, const std::vec
 std::optional<HeldMinimum> minimum_near(const Vertex& vertex, const Load& load, const std::vector<std::size_t>& acting,
                                         double nearest, double off) {
     HeldForm form(vertex, load, acting);
+    // 0x1p-39: choice: the first share that is tried; 0x1p3: choice: shares of the smallest radius that are tried, each
+    // proved by itself
     for (double share = 0x1p-39; share < 1; share *= 0x1p3) { // on a shorter way the form changes less
         if (auto minimum = form.prove(share * vertex.packing.min_radius(), nearest, off)) {
             form.describe(*minimum);

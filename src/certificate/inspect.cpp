@@ -18,12 +18,13 @@ using roundoff::infinity;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 double middle(const Interval& interval) {
-    return 0.5 * interval.lower + 0.5 * interval.upper;
+    return 0.5 * interval.lower + 0.5 * interval.upper; // exact: middle of an interval, rounded
 }
 
 /// Bound of the distance to the middle.
 double half_width(const Interval& interval) {
     const double m = middle(interval);
+    // definition.md Numbers (the rounding of two subtractions, one product)
     return std::max(interval.upper - m, m - interval.lower) * (1 + 0x1p-50);
 }
 

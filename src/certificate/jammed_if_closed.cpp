@@ -15,7 +15,9 @@ namespace isostat {
 
 namespace {
 
-constexpr double slack = 1e-9;          ///< rounding of the few operations that bounds are put together by
+// cells.md C14
+constexpr double slack = 1e-9; ///< rounding of the few operations that bounds are put together by
+// cells.md C14
 constexpr double of_products = 0x1p-40; ///< of v with a column or with the load: up to twelve terms, entries up to 3
 
 /// Contacts, how they turn with the coordinates, and what the load is. Nothing here moves but by the strain asked for.
@@ -31,6 +33,7 @@ struct ClosedList {
 
 /// \p strains: all of the cell; else the disks alone.
 ClosedList list_of(const Packing& packing, const std::vector<Contact>& contacts, bool strains) {
+    // cells.md C14
     ClosedList list{packing, contacts, {}, {}, 0, normal_rate(packing, contacts), 1e-3 * packing.min_radius()};
     list.packing.cell.keeps_shape = false;
     list.packing.cell.move(strains, strains);
@@ -52,7 +55,7 @@ ClosedList list_of(const Packing& packing, const std::vector<Contact>& contacts,
         std::fill_n(load.stress.begin(), packing.dimension, pressure);
         load.refer_to(list.packing);
         list.load = on_dofs(load.external_force(list.packing), dofs);
-        list.load_rate = pressure * (packing.dimension == plane ? 1 : 4 * longest) * (1 + slack);
+        list.load_rate = pressure * (packing.dimension == plane ? 1 : 4 * longest) * (1 + slack); // cells.md C14
     }
     return list;
 }
@@ -89,8 +92,8 @@ double radius_of_balance(const ClosedList& list, const EntropicBalance& b) {
 /// By Newton's method for the smallest sum of f plus load.v, where H f is the load; where there is none v runs off, and
 /// `radius_of_opening` is asked. Nothing of it is proved.
 EntropicBalance balance_of(const ClosedList& list) {
-    constexpr int most_steps = 100;
-    constexpr double settled = 1e-13;
+    constexpr int most_steps = 100;   // cost: steps before nothing is said
+    constexpr double settled = 1e-13; // guess: when Newton's method has converged
     const Eigen::Map<const Sparse> h(list.h.rows, list.h.cols, list.h.entries(), list.h.start.data(), list.h.row.data(),
                                      list.h.value.data());
     const Eigen::Map<const Eigen::VectorXd> load(list.load.data(), list.h.rows);
@@ -139,7 +142,7 @@ std::optional<JammedIfClosed> judge_list(const ClosedList& list, double moved) {
 } // namespace
 
 IfClosed jammed_if_closed(Packing packing, std::vector<Contact> contacts) {
-    constexpr int farthest_image = 3;
+    constexpr int farthest_image = 3; // cells.md C2, C14
     const std::vector<int> rattlers = rattlers_by_coordination(packing, contacts);
     const auto rattles = [&](int i) { return std::ranges::binary_search(rattlers, i); };
     std::erase_if(contacts, [&](const Contact& c) { return rattles(c.i) || (c.of_disks() && rattles(c.j)); });

@@ -17,8 +17,8 @@ namespace {
 
 /// The bounds count roundings, not underflow or overflow: where those could matter, nothing is claimed.
 std::optional<std::string> out_of_range(const State& state) {
-    constexpr double largest = 1e100;
-    constexpr double smallest = 1e-100;
+    constexpr double largest = 1e100;   // bounds.md V0, no over- or underflow
+    constexpr double smallest = 1e-100; // bounds.md V0, no over- or underflow
     const auto [least, most] = std::ranges::minmax_element(state.packing.radius);
     const auto size = [](const std::vector<double>& x) {
         return std::accumulate(x.begin(), x.end(), 0.0, [](double m, double c) { return std::max(m, std::abs(c)); });
@@ -52,7 +52,7 @@ double least_stretch(const Packing& packing) {
             inverse_norm = std::hypot(inverse_norm, column[a]);
         }
     }
-    return 1 / inverse_norm * (1 - 1e-12);
+    return 1 / inverse_norm * (1 - 1e-12); // cells.md C4, rounding of a bound
 }
 
 } // namespace
@@ -92,7 +92,7 @@ std::optional<Packing> on_grid(Packing packing, const std::vector<Contact>& cont
 }
 
 double far_weight(const Packing& packing, double reach) {
-    constexpr double root2 = 1.4143;
+    constexpr double root2 = 1.4143; // true_vertex.md V5 (other gaps), above sqrt 2
     if (!packing.cell.any()) {
         return packing.arcs.empty() ? root2 : 2; // U9
     }
@@ -106,6 +106,7 @@ double far_weight(const Packing& packing, double reach) {
         }
         extent = std::hypot(extent, high - low);
     }
+    // cells.md C4, rounding of a bound
     return root2 + (2 * packing.max_radius() + reach + extent) / least_stretch(packing) * (1 + 1e-12);
 }
 

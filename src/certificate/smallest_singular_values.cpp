@@ -10,8 +10,9 @@
 namespace isostat {
 
 std::vector<double> smallest_singular_values(const IsostaticStructure& structure, int count) {
-    constexpr int beside = 10; // further vectors: the wanted ones converge as the ratio to theirs
-    constexpr int most_iterations = 200;
+    // guess: values for people, not proved
+    constexpr int beside = 10;           // further vectors: the wanted ones converge as the ratio to theirs
+    constexpr int most_iterations = 200; // cost: of iterations
     const Eigen::Index size = structure.size();
     const int width = static_cast<int>(std::min<Eigen::Index>(size, count + beside));
     const Eigen::Index wanted = std::min(count, width);
@@ -28,6 +29,7 @@ std::vector<double> smallest_singular_values(const IsostaticStructure& structure
         const Eigen::VectorXd inverse =
             Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner>(r).singularValues().head(wanted);
         const Eigen::VectorXd now = inverse.cwiseInverse();
+        // guess: values for people, not proved
         const bool settled = ((now - values).cwiseAbs().array() <= 1e-4 * now.array()).all();
         values = now;
         if (settled) {

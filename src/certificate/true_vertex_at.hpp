@@ -115,13 +115,15 @@ template <class T> void TrueVertexAt<T>::claim_radii() {
     const double largest = *std::ranges::max_element(moved);
     const double away = norm_of_bounds(moved);
     const double radius = above(vertex_.radius());
-    claimed_radius_ = (largest + radius) * (1 + 8 * u);
+    claimed_radius_ = (largest + radius) * (1 + 8 * u); // 8: true_vertex.md V5 (8e D)
     // No other root within (1 + sqrt(1 - 2h)) / (beta K) >= 1.7 / (beta K) of q + p in the 2-norm.
     const double room = vertex_.lipschitz() == 0
                             ? infinity
+                            // true_vertex.md V5 (by bounds.md T9)
                             : (1.7 / (vertex_.derivative() * vertex_.lipschitz()) * (1 - 8 * u) - away) /
                                   std::sqrt(static_cast<double>(subject_.size())) * (1 - 8 * u);
     // A sixteenth of it is claimed: enough to name the vertex, and within reach of a checker that uses another norm.
+    // true_vertex.md V5 (claimed share, division of gaps)
     claimed_unique_radius_ = std::max(claimed_radius_, room / 16);
     exists_ = vertex_.sigma() > 0 && claimed_radius_ <= room;
 }
@@ -141,7 +143,10 @@ template <class T> Interval TrueVertexAt<T>::gap(const Contact& contact) const {
         value = A::rounded(at.wall_gap(contact));
     }
     const double radius = above(vertex_.radius());
+    // true_vertex.md V5 (rounding of bounds)
     return around(number(value), separation_weight(contact) * radius * (1 + 4 * u) +
+                                     // 8: true_vertex.md V5 (8e D); 16: true_vertex.md V5 (claimed share, division of
+                                     // gaps)
                                      8 * unit() * (std::abs(value) + size) + 16 * u * std::abs(value));
 }
 
@@ -191,6 +196,7 @@ template <class T> double TrueVertexAt<T>::load_turn(bool by_the_loaded_stress) 
         const double weight =
             wall.other_at < 0
                 ? wall.other
+                // true_vertex.md V6 (c + 8)
                 : (std::abs(wall.length) + std::abs(wall.other) + 2 * above(vertex_.distance())) * (1 + 8 * u);
         sum = std::hypot(sum, stress * weight);
     }
@@ -200,6 +206,7 @@ template <class T> double TrueVertexAt<T>::load_turn(bool by_the_loaded_stress) 
 template <class T> auto TrueVertexAt<T>::present() -> const Solution& {
     if (!present_) {
         // True stresses act on the lengths of the true vertex.
+        // true_vertex.md V6 (c + 8)
         present_ = solve(external_force(false), load_turn(false) * above(vertex_.radius()) * (1 + 8 * u));
         for (std::size_t l = 0; l < subject_.zero.size(); ++l) {
             if (subject_.zero[l] != 0) {
@@ -233,6 +240,7 @@ template <class T> auto TrueVertexAt<T>::infinitesimal_solution() -> const Solut
 
 template <class T> Interval TrueVertexAt<T>::around(const T& value, double bound) const {
     const double middle = A::rounded(value);
+    // true_vertex.md V5 (rounding of bounds)
     const double half = bound + 4 * u * std::abs(middle); // dropping the low part, and the sum
     const Interval interval{std::nextafter(middle - half, -infinity), std::nextafter(middle + half, infinity)};
     return interval.lower <= interval.upper ? interval : Interval{-infinity, infinity}; // a NaN says nothing
@@ -279,7 +287,7 @@ template <class T> std::string TrueVertexAt<T>::open_rate(int l) {
 template <class T> LoadEndAnswer TrueVertexAt<T>::without_end(int direction) {
     const double bound = unit_load().bound;
     for (int l = 0; l < subject_.size(); ++l) {
-        if (limits(l) && !steady(l) && !(rate(l, direction) > bound * (1 + 4 * u))) {
+        if (limits(l) && !steady(l) && !(rate(l, direction) > bound * (1 + 4 * u))) { // true_vertex.md V7 (4e)
             return {{}, open_rate(l)};
         }
     }
@@ -309,8 +317,9 @@ LoadEndAnswer TrueVertexAt<T>::vanishes_before(int first, const std::vector<int>
         const double value = A::rounded(force.value[index(l)] - product);
         const double b = std::abs(A::rounded(slope.value[index(l)]));
         const double bound = (force.bound + size * slope.bound + (b + slope.bound) * error +
+                              // true_vertex.md V7 (4e)
                               4 * unit() * (std::abs(A::rounded(force.value[index(l)])) + b * size)) *
-                                 (1 + 16 * u) +
+                                 (1 + 16 * u) + // true_vertex.md V7 (rounding)
                              2 * u * std::abs(value);
         if (!(value > bound) && answer.ties++ == 0) {
             answer.open_question =
@@ -349,13 +358,14 @@ template <class T> LoadEndAnswer TrueVertexAt<T>::load_end(int direction) {
         return without_end(direction);
     }
     const int first = static_cast<int>(vanishing->index);
-    const double steepness = -rate(first, direction) * (1 - 4 * u) - slope.bound;
+    const double steepness = -rate(first, direction) * (1 - 4 * u) - slope.bound; // 4: true_vertex.md V7 (4e)
     if (!(steepness > 0)) {
         return {{}, open_rate(first)};
     }
     // The load of the end is sigma - t.
     const T t = force.value[index(first)] / slope.value[index(first)];
     const double size = std::abs(A::rounded(t));
+    // true_vertex.md V7 (rounding)
     const double error = ((force.bound + size * slope.bound) / steepness + 4 * unit() * size) * (1 + 16 * u);
     const std::vector<int> members = subject_.vanish_with(first);
     if (LoadEndAnswer open = vanishes_before(first, members, t, error); open.ties > 0) {

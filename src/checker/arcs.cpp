@@ -9,9 +9,9 @@ namespace isostat::checker {
 
 namespace {
 
-constexpr double slack = 0x1p-36; // of the sine of an angle to a joint, in doubles
+constexpr double slack = 0x1p-36; // checker.md K29, of the sine of an angle to a joint, in doubles
 // Of the largest length: beside a joint both arcs have one gap, but for roundings.
-constexpr double indistinguishable = 0x1p-48;
+constexpr double indistinguishable = 0x1p-48; // checker.md K29, gaps that doubles do not tell apart
 
 struct Direction {
     Integer x, y;
@@ -91,6 +91,7 @@ std::string not_convex(const State& state, const Directions& at, const std::vect
         }
         turn += Directions::angle(from, to);
     }
+    // 4: clumps.md U9, the least number of arcs; 3: checker.md K29, between one and two turns
     return ring.size() >= 4 && turn < 3 * std::numbers::pi ? "" : "arcs that are no closed convex curve";
 }
 
@@ -125,6 +126,8 @@ std::string unfit_arcs(const Problem& problem, const State& state, const TrueVer
             joints[static_cast<std::size_t>(next_of(ring, k))][0] = ring[k];
         }
         const double smallest = std::min(shortest, thinnest);
+        // 9: checker.md K29, the condition on the radius; 0x1p-13: checker.md K29, lengths that doubles tell directions
+        // of
         if (!(vertex.radius < Rational(shortest * (shortest / (9 * around)))) || !(smallest > 0x1p-13 * largest)) {
             return "the vertex is not known well enough, or the box too large, to say which arcs are nearest";
         }
@@ -159,7 +162,7 @@ Rational arc_blur(const Packing& packing) {
         }
         most = std::max(most, around);
     }
-    return most * power_of_two(-70);
+    return most * power_of_two(-70); // checker.md K29, what sines in doubles leave of a gap
 }
 
 NearestArcs::NearestArcs(const Packing& packing, const std::vector<double>& q, const std::vector<double>& radius)

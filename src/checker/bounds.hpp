@@ -11,7 +11,8 @@
 
 namespace isostat::checker {
 
-inline constexpr double root_of_two = 1.4142135623730952; ///< above the square root of 2
+// exact: above the square root of 2 (checker.md K18, K19)
+inline constexpr double root_of_two = 1.4142135623730952;
 
 /// As `std::nextafter` towards infinity, without a call: there are millions.
 inline double next_above(double x) {

@@ -25,7 +25,7 @@ bool take_word(std::string_view& text, std::string_view word) {
 
 /// "held x of grain 4", after the first word.
 std::optional<Contact> held_coordinate(std::string_view rest, int dimension) {
-    constexpr int most_grains = 1 << 29;
+    constexpr int most_grains = 1 << 29; // cost: the largest number of a grain that is read
     const int axis = rest.empty() ? -1 : rest.front() - 'x';
     int grain = -1;
     if (axis < 0 || axis >= dimension || (rest.remove_prefix(1), !take_word(rest, " of grain ")) ||

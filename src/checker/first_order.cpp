@@ -74,6 +74,7 @@ Velocities::Solution Velocities::solve(const std::vector<Rational>& b, const Rat
     // The fastest coordinate is above b / the largest entry of A: 120 bits below this are kept.
     const long scale = e_.solver->scale(problem);
     const long shift =
+        // guess: bits of v' (checker.md K12)
         120 + scale + problem.fine - (largest == 0 ? 0 : bits(largest.get_num()) - bits(largest.get_den()));
     FirstMotion motion{problem, e_.vertex.middle, {}, std::vector<Integer>(problem.dof_of.size())};
     for (const Rational& rate : b) {
@@ -81,7 +82,7 @@ Velocities::Solution Velocities::solve(const std::vector<Rational>& b, const Rat
     }
     std::vector<Integer> residual = motion.target;
     long size = bits(largest_of(residual));
-    for (int step = 0; step < 20 && size > 0 && e_.solver->usable(); ++step) {
+    for (int step = 0; step < 20 && size > 0 && e_.solver->usable(); ++step) { // guess: refinements of v'
         Eigen::MatrixXd right(problem.contacts(), 1);
         for (int l = 0; l < problem.contacts(); ++l) {
             right(l, 0) = approximate(residual[static_cast<std::size_t>(l)], -size);
@@ -215,8 +216,8 @@ std::vector<Range> FirstOrder::forces(const std::vector<Range>& f0) const {
         for (std::size_t a = 0; a < layout.axes(); ++a) {
             const Range stress(-stress_of(e_.state.load, a));
             for (std::size_t b = 0; b < layout.axes(); ++b) {
-                if (a != b) { // the third length, in space
-                    const std::size_t c = 3 - a - b;
+                if (a != b) {                        // the third length, in space
+                    const std::size_t c = 3 - a - b; // exact: the third of the axes 0, 1, 2
                     const Range third = layout.dimension == plane
                                             ? Range(Rational(1))
                                             : coordinate_at(e_.problem, e_.vertex, layout.of_length(c));

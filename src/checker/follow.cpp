@@ -40,6 +40,7 @@ double gap_at(const Packing& packing, const std::vector<double>& q, const Contac
 
 /// A gap changes by at most this factor times the fastest coordinate for each of the two grains: above sqrt d.
 double per_coordinate(const Packing& packing) {
+    // 1.5: choice: reach of the list of the look; 1.75: choice: the same of spheres, above the root of 3
     return packing.dimension == plane ? 1.5 : 1.75;
 }
 
@@ -48,7 +49,7 @@ std::optional<std::vector<Contact>> near_pairs_in_cell(const Packing& packing, c
                                                        double reach) {
     const CellImages images(packing, q);
     const double widest = 2 * packing.max_radius();
-    const auto range = images.range(widest + 6 * reach);
+    const auto range = images.range(widest + 6 * reach); // choice: reach of the list of the look
     if (!images.usable() || !range) {
         return {};
     }
@@ -128,7 +129,8 @@ class Walk {
   public:
     Walk(const State& from, const Motion& motion)
         : from_(from), motion_(motion), turns_(motion.closed.kind == ContactKind::held),
-          tolerance_(1e-9 * from.packing.min_radius()),
+          tolerance_(1e-9 * from.packing.min_radius()), // 1e-9: choice: gaps and power that are looked at
+          // 0.2: choice: reach of the pairs looked at; 4: cost: reach of the pairs looked at, in displacements
           reach_(std::min(0.2 * from.packing.min_radius(), 4 * motion.displacement)), body_(bodies_of(from.packing)),
           kept_(from.packing, from.contacts, motion.solver), q_(from.packing.q) {}
 
@@ -142,8 +144,12 @@ class Walk {
         if (Followed there = arrive_on_parabola(); there.end) {
             return there;
         }
-        const double parts = motion_.doublings > 0 ? 3.5 : 1.75; // the end lies within the last of four steps, or two
+        // 1.75: choice: first step of the look (the end lies within the second step); 3.5: choice: first step of the
+        // look (the end lies within the fourth step)
+        const double parts = motion_.doublings > 0 ? 3.5 : 1.75;
         double longest = std::min(motion_.displacement / parts, motion_.step * from_.packing.min_radius());
+        // 8: cost: steps of the look; 16: cost: steps of the look, and how much shorter near its end; 1e5: cost: steps
+        // of the look
         auto steps = static_cast<long>(std::min(8 * motion_.displacement / longest + 16, 1e5)) + motion_.doublings;
         double step = std::ldexp(longest, -motion_.doublings);
         int zooms = 0;
@@ -188,9 +194,11 @@ class Walk {
     }
 
   private:
-    static constexpr double same = 1e-6; ///< of the recorded displacement: what an end that is taken at once is off by
-    static constexpr double near = 1e-2; ///< of the recorded displacement: an end there may be the right one
-    static constexpr int most_halvings = 10;
+    // 1e-6: choice: of the recorded displacement: what an end that is taken at once is off by; and power that is looked
+    // at
+    static constexpr double same = 1e-6;
+    static constexpr double near = 1e-2; ///< choice: of the recorded displacement: an end there may be the right one
+    static constexpr int most_halvings = 10; // cost: how often a step of the look is halved
 
     /// For an arc so short that gaps along it cannot be told from 0, so that there are no steps.
     [[nodiscard]] Followed arrive_at_once() const {
@@ -202,7 +210,7 @@ class Walk {
     /// where the power is seen to be positive at the start, nothing has closed in the middle, and the end is as far
     /// away as recorded.
     [[nodiscard]] Followed arrive_on_parabola() {
-        constexpr int enough = 24; // bits of the velocity of a guess
+        constexpr int enough = 24; // guess: bits of the velocity for the parabola
         const bool leaves =
             motion_.closed == from_.contacts[motion_.opened] ||
             std::find(motion_.touching.begin(), motion_.touching.end(), motion_.closed) != motion_.touching.end();
@@ -252,8 +260,9 @@ class Walk {
 
     /// The next point.
     bool move(double step, std::vector<double>& next) {
+        // choice: when the look's Newton has converged
         constexpr double between = 0x1p-40; // accuracy of the points between the ends
-        constexpr int most = 46;            // bits of the velocity
+        constexpr int most = 46;            // bits of the velocity; choice: rounding of the velocity of a step
         const std::optional<System::Way> way = aim(most);
         if (!way) {
             return false;
@@ -329,6 +338,7 @@ class Walk {
 
     /// Whether the contact closes before `next`.
     [[nodiscard]] Met closing(const std::vector<double>& next, bool first) const {
+        // choice: power that is looked at
         constexpr double rounding = 0x1p-50; // of a velocity, whose largest component is 1
         if (powered_ && power_ < -1e-6 * power_size_.terms && power_ < -rounding * power_size_.load) {
             return {false, {}, fmt::format("the power of the load vanishes before {} closes", name(motion_.closed))};
@@ -394,9 +404,11 @@ class Walk {
             q[i] += part * (next[i] - q[i]);
         }
         return end_near(std::move(q), [](System& end, std::vector<double>& at) {
+            // cost: a longer last step is refined in quadruple precision
             constexpr double rounding = 0x1p-44; // the vertex that is proved is found from there
-            constexpr double singular = 0x1p18;  // roundings that grow more may end too far from it for its proof
-            const std::optional<double> step = end.newton(at, {}, 0x1p-46);
+            // cost: where rounding is enlarged more, the end is refined in quadruple precision
+            constexpr double singular = 0x1p18; // roundings that grow more may end too far from it for its proof
+            const std::optional<double> step = end.newton(at, {}, 0x1p-46); // cost: accuracy of the end in double
             std::vector<double> better = at;
             const bool rough = step && (*step > rounding || !(end.spread() < singular));
             if (rough && end.newton_in_quadruple(better)) {

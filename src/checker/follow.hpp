@@ -22,6 +22,7 @@ struct Motion {
     Contact closed;         ///< the contact that closes, or the coordinate that is held at a power turn
     double held_at = 0;     ///< value of the held coordinate there
     double displacement = 0;
+    // choice: step of the way that is looked at (checker.md)
     double step = 0.02; ///< longest step, in units of the smallest radius
     int doublings = 0;  ///< number of times that the step doubles, from a shorter first step
     int zooms = 0;      ///< number of times that the last step is repeated in steps a sixteenth as long

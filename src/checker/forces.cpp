@@ -87,7 +87,7 @@ template <class Number> class Balance {
         problem_ = &problem;
         const Integer blur = ceiling_of(2 * vertex.radius, -problem.fine);
         constexpr bool narrow = std::is_same_v<Number, Wide>;
-        if (narrow && bits(blur) > 100) {
+        if (narrow && bits(blur) > 100) { // checker.md K26 (B)
             return false;
         }
         blur_ = number<Number>(blur);
@@ -97,7 +97,7 @@ template <class Number> class Balance {
         for (const auto& [dof, force] : load.acting()) {
             const Integer lower = -ceiling_of(force.upper, shift - problem.fine);
             const Integer width = -floor_of(force.lower, shift - problem.fine) - lower;
-            if (narrow && std::max(bits(lower), bits(width)) > 250) {
+            if (narrow && std::max(bits(lower), bits(width)) > 250) { // 250: checker.md K26 (sums)
                 return false;
             }
             target_[dof] = number<Sum>(lower);
@@ -117,9 +117,10 @@ template <class Number> class Balance {
             }
         }
         const long entry_bits = most_bits(difference_);
-        rounding_ = entry_bits + 3;
+        rounding_ = entry_bits + 3; // cost: a residual of some units is not refined
         const std::size_t touching = std::max(problem.contacts_of.lengths().second, std::size_t{1});
         const auto terms = static_cast<long>(std::bit_width(touching * static_cast<std::size_t>(times)));
+        // checker.md K26 (G and C)
         largest_ = std::min(125 - terms, 250 - terms - std::max(entry_bits, problem.weight_bits + 1));
         residual_ = target_; // g = 0
         return !narrow || largest_ > 0;
@@ -130,6 +131,7 @@ template <class Number> class Balance {
     /// open. False: g is too large.
     bool refine(const Solver& solver) {
         long size = most_bits(residual_);
+        // cost: a residual below an eighth of what the vertex leaves open is not refined
         const auto open = [this] { return blur_ == 0 ? 0 : bits(blur_) + most_bits(sought_) - 4; };
         for (int step = 0; step < most_refinements && size > std::max(rounding_, open()); ++step) {
             Eigen::MatrixXd b(problem_->dofs(), 1);
@@ -183,7 +185,7 @@ template <class Number> class Balance {
     }
 
   private:
-    static constexpr int most_refinements = 60;
+    static constexpr int most_refinements = 60; // guess: refinements of g'
 
     /// -load - A^T g at the middle of the vertex and the lower end of -load.
     void find_residual() {
@@ -257,7 +259,7 @@ std::optional<ContactForces> forces_in(const Problem& problem, const Solver& sol
     const auto around_by = [&error](const Rational& column_sum) { return ceiling_of(error * column_sum); };
     Integer around = around_by(inverse.column_sum_max);
     if constexpr (std::is_same_v<Number, Wide>) {
-        if (inverse.column_sum.empty() && bits(around) <= 125) {
+        if (inverse.column_sum.empty() && bits(around) <= 125) { // checker.md K26 (G and C)
             return ContactForces(problem, balance.sought(), number<Wide>(around), problem.fine - shift);
         }
     }
@@ -302,6 +304,7 @@ Bounds ContactForces::bounds(std::size_t l) const {
     const Wide units = problem_->rows[l].quadratic ? problem_->sum.in<Wide>()[l] : Wide(1) << problem_->weight_bits;
     const double lower = of_double(middle_[l] - around_) * (of_double(units) * unit);
     const double upper = of_double(middle_[l] + around_) * (of_double(units) * unit);
+    // checker.md K26 (roundings of a force as doubles)
     return Bounds::outwards(lower - 0x1p-49 * std::abs(lower), upper + 0x1p-49 * std::abs(upper));
 }
 
@@ -313,6 +316,7 @@ ContactForces contact_forces(const Problem& problem, const Solver& solver, const
     }
     // Entries of A are below 2^(scale + fine), so forces per length are above the largest load / that. 40 bits more
     // than the vertex has are kept below.
+    // checker.md K26 (40 more than the vertex has)
     const long shift = problem.digits + 40 + solver.scale(problem) + problem.fine - *size;
     std::optional<ContactForces> forces;
     if (vertex.middle.narrow()) {

@@ -12,7 +12,7 @@ namespace isostat::checker {
 
 namespace {
 
-constexpr int deepest = 55;
+constexpr int deepest = 55; // cost: halvings of a stretch
 
 /// Horner's rule for the derivative of order 0, 1 or 2.
 Bounds value_of(const std::vector<Bounds>& c, const Bounds& s, int derivative) {
@@ -169,6 +169,7 @@ double largest_entry(const std::vector<double>& x) {
     return most;
 }
 
+// checker.md K19 (roundings of what is near)
 constexpr double more = 1 + 1e-12; // for the roundings of a difference and of four sums
 
 /// Extent of the centres.
@@ -276,9 +277,10 @@ std::optional<std::vector<Contact>> GapCourses::near_images(const Tube& tube, co
     const double most = *std::max_element(way.begin(), way.end() - 1);
     const double farthest = (2 * (packing.max_radius() + most) + shift) / (1 - strain) * more;
     const auto range = images.range(2 * farthest);
-    if (!(strain < 0.5) || !images.usable() || !range) {
+    if (!(strain < 0.5) || !images.usable() || !range) { // cost: strain of the cell along a piece (checker.md K19)
         return std::nullopt;
     }
+    // checker.md K19 (roundings of the places of images)
     const double slack = 0x1p-48 * (1 + images.periods(*range)) * largest_entry(q);
     std::vector<Placed> places = images.near_cell(*range, farthest + slack);
     std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) { return a.at[0] < b.at[0]; });

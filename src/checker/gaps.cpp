@@ -57,6 +57,7 @@ struct Approximation {
         q = vertex.middle.near(-largest);
         radius = problem.radius.near(-largest);
         // K9: 64 roundings of numbers up to 1, and four radii of the enclosure.
+        // 0x1p-47: checker.md K9; 4: checker.md K9 (2 sqrt d r, four times the error)
         error = 0x1p-47 + 4 * rounded_up(vertex.radius * power_of_two(-largest - problem.fine));
     }
     [[nodiscard]] double gap(const Contact& pair, const Layout& layout) const {
@@ -107,6 +108,7 @@ class Collector {
         std::sort(contacts_.begin(), contacts_.end());
     }
     /// Pairs with an approximate gap above this are certainly not the nearest.
+    // checker.md K9 (2 sqrt d r, four times the error)
     [[nodiscard]] double limit() const { return best_ + 4 * at_.error; }
     void offer(const Contact& pair) {
         const double gap = at_.gap(pair, layout_);
@@ -150,6 +152,7 @@ std::optional<Contact> overlapping_image(const Problem& problem, const State& st
     const auto disk = static_cast<int>(std::max_element(r.begin(), r.end()) - r.begin());
     const Integer widest = problem.radius[static_cast<std::size_t>(disk)];
     const CellImages images(state.packing, state.packing.q);
+    // cost: images that are looked at, more than two radii
     const auto range = images.range(2.5 * approximate(widest, problem.fine));
     if (!images.usable() || !range) {
         return Contact{ContactKind::disk_disk, -1, -1};
@@ -159,6 +162,7 @@ std::optional<Contact> overlapping_image(const Problem& problem, const State& st
         const auto times = [&m](std::size_t a) { return static_cast<std::int8_t>(m[a]); };
         const Contact pair = pair_of(disk, disk, {{times(0), times(1), times(2)}});
         if (!pair.image.is_here() && !own_image_moves(state.packing, pair) &&
+            // exact: the square of a diameter
             Row(pair, problem.layout).square(problem.stored, problem.layout.axes()) < 4 * widest * widest) {
             overlap = pair;
         }
@@ -228,6 +232,7 @@ namespace {
 void sweep(const std::vector<Placed>& places, const Approximation& at, double widest, Collector& collector) {
     const auto reach = [&] { return widest + collector.limit() + at.error; };
     double height = 0;
+    // cost: reach of the first sweep over images, more diameters than the smallest gap leaves
     for (double needed = std::min(1.25 * widest, reach()); height < needed; needed = reach()) {
         height = needed; // again when a pair farther away could be as near as the nearest found
         for_each_near(places, height, reach, [&](const Placed& one, const Placed& two) {
@@ -263,6 +268,7 @@ std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const 
     }
     const CellImages images(state.packing, at.q);
     const double error = at.error;
+    // cost: reach of the first sweep over images, more diameters than the smallest gap leaves
     double reach = 1.25 * widest; // of what is swept: the smallest gap is far below a quarter of that
     std::optional<Periods> range = images.range(reach);
     while (range && images.usable()) {
@@ -287,6 +293,7 @@ std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const 
 std::vector<Gap> smallest_gaps(const Problem& problem, const State& state, const TrueVertex& vertex) {
     const auto nearest = nearest_pairs(problem, state, Approximation(problem, vertex));
     if (!nearest) {
+        // choice: any gap at all, where nothing is known
         return {{Contact{ContactKind::disk_disk, -1, -1}, Range::around(0, power_of_two(2000))}};
     }
     const Rational open = arc_blur(state.packing);

@@ -9,8 +9,8 @@ namespace isostat::checker {
 namespace {
 
 /// Wraps and ranges up to these have differences below 128 (`Image`).
-constexpr int farthest_disk = 50;
-constexpr int most_periods = 16;
+constexpr int farthest_disk = 50; // cost: how far a disk may be from the cell (checker.md K9)
+constexpr int most_periods = 16;  // cost: periods swept (checker.md K9)
 
 } // namespace
 
@@ -120,6 +120,7 @@ std::optional<Periods> CellImages::range(double distance) const {
         if (!packing_.cell.periodic[a]) {
             continue;
         }
+        // checker.md K9 (periods swept, with a hundredth for roundings)
         const double most = distance / height_[a] + 1.01;
         if (!(most < most_periods)) {
             return std::nullopt;

@@ -43,6 +43,7 @@ void for_each_near(const std::vector<Placed>& places, double height, const Reach
     const auto [lowest, highest] = std::ranges::minmax(places, {}, [](const Placed& place) { return place.at[1]; });
     const double extent = highest.at[1] - lowest.at[1];
     height = std::max(height, extent / static_cast<double>(places.size()));
+    // checker.md K9 (height of strips)
     height *= 1 + 0x1p-20; // for the rounding of quotients, which are at most the number of places
     std::vector<std::vector<Placed>> strips(static_cast<std::size_t>(extent / height) + 2);
     for (const Placed& place : places) {

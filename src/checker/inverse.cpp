@@ -45,6 +45,7 @@ Columns<Integer> columns_of(const Problem& problem) {
 /// `inflation` times the computed one (K3). Values are in units that keep them far from over- and underflow.
 struct Sums {
     explicit Sums(int size)
+        // 8: checker.md K3; 8.0: checker.md K3; 0x1p-53: exact: u, the unit of rounding
         : inflation(1 + 8 * (size + 8.0) * 0x1p-53), column(static_cast<std::size_t>(size)),
           residual_column(static_cast<std::size_t>(size)) {}
     double inflation;
@@ -92,7 +93,7 @@ std::optional<std::pair<Columns<std::int64_t>, long>> narrow(const Columns<Integ
     long entry_bits = 1;
     for (const Integer& value : exact.value) {
         entry_bits = std::max(entry_bits, bits(value));
-        if (entry_bits > 60) {
+        if (entry_bits > 60) { // cost: then longer rows
             return {};
         }
         a.value.push_back(value.get_si());
@@ -106,13 +107,15 @@ class Fixed64Rows {
     /// `rescale`: x of the solver is R in units of 2^rescale.
     Fixed64Rows(const Problem& problem, const Columns<std::int64_t>& columns, long entry_bits, long rescale)
         : problem_(problem), columns_(columns), rescale_(rescale),
+          // 62: checker.md K3 (64-bit entries); 124: checker.md K3
           row_bits_(std::min(62L, 124 - entry_bits - bits_of_count(problem.dofs()))),
+          // checker.md K3
           largest_shift_(125 - bits_of_count(problem.dofs())), r_(static_cast<std::size_t>(problem.dofs())),
           sums_(problem.dofs()) {}
 
     /// |r_l| < 2^row_bits, |a| < 2^entry_bits, at most n terms
     /// and the identity: below 2^126. False: r has too few bits.
-    [[nodiscard]] bool fits() const { return row_bits_ >= 30; }
+    [[nodiscard]] bool fits() const { return row_bits_ >= 30; } // cost: then longer rows
     [[nodiscard]] InverseBound bound() const { return sums_.bound(problem_, "64-bit integers"); }
 
     /// Adds a row as the solver found it. False: the row is not finite, or its residual reaches 1.
@@ -180,7 +183,7 @@ InverseBound bound_fixed64(const Problem& problem, const Solver& solver, const C
     if (!sums.fits()) {
         return {};
     }
-    constexpr int block = 16;
+    constexpr int block = 16; // cost: rows at a time
     for (int first = 0; first < n; first += block) {
         const int width = std::min(block, n - first);
         Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(n, width);
@@ -205,7 +208,7 @@ class GmpRows {
         for (const Integer& value : columns.value) {
             entry_bits_ = std::max(entry_bits_, bits(value));
         }
-        shift_ = entry_bits_ + 2 * bits_of_count(problem.dofs()) + 64;
+        shift_ = entry_bits_ + 2 * bits_of_count(problem.dofs()) + 64; // cost: bits of the rows
     }
     [[nodiscard]] long shift() const { return shift_; }
     [[nodiscard]] InverseBound bound(const char* arithmetic) const { return sums_.bound(problem_, arithmetic); }
@@ -245,7 +248,7 @@ class GmpRows {
   private:
     /// Rounded down by less than one part in 2^52; tiny numbers must not vanish.
     [[nodiscard]] double up(const Integer& size) const {
-        return size == 0 ? 0 : std::max(approximate(size, -shift_), 0x1p-900);
+        return size == 0 ? 0 : std::max(approximate(size, -shift_), 0x1p-900); // checker.md K3 (never 0)
     }
     const Problem& problem_;
     const Columns<Integer>& columns_;
@@ -259,7 +262,7 @@ InverseBound bound_gmp(const Problem& problem, const Solver& solver, const Colum
     const int n = problem.dofs();
     GmpRows rows(problem, columns);
     const long to_row = rows.shift() + problem.spare - solver.scale(problem);
-    const long good = rows.shift() - bits_of_count(n) - 20;
+    const long good = rows.shift() - bits_of_count(n) - 20; // 20: guess: refinements
     for (int k = 0; k < n; ++k) {
         std::vector<Integer> r(static_cast<std::size_t>(n));
         std::vector<Integer> residual = rows.residual(k, r);
@@ -321,11 +324,13 @@ InverseBound bound_rational(const Problem& problem, const Columns<Integer>& colu
 
 /// An upper bound of the square root, by less than 2^-20.
 Rational root(unsigned long value) {
+    // 20: checker.md K15 (root rounded up to 2^-20); 40: checker.md K15 (root rounded up)
     return Rational(sqrt(shifted_left(Integer(value), 40)) + 1) * power_of_two(-20);
 }
 
 /// Bounds the inverse by the smallest singular value, when R is the inverse.
 InverseBound bound_by_singular_value(const Problem& problem, const Solver& solver, bool roughly) {
+    // choice: a bound that does at the vertices of a run (checker.md K15, K30)
     const std::optional<Rational> sigma = smallest_singular_value(problem, solver.order(), roughly ? 0x1p-18 : 0);
     if (!sigma) {
         return {};

@@ -103,7 +103,7 @@ Rational equally_near(const State& state) {
     for (const double r : packing.radius) {
         largest = std::max(largest, r);
     }
-    return Rational(largest) * power_of_two(-46);
+    return Rational(largest) * power_of_two(-46); // checker.md K9, gaps that count as equally near
 }
 
 constexpr const char* too_far = "the cell is too sheared, or a disk too far from it, for a search among its images";

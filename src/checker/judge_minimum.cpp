@@ -275,8 +275,10 @@ ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
     const Eigen::MatrixXd inverse = middle_of(stored).inverse();
     const double step = newton_step_above(e, acting, inverse);
     // The narrower, the sharper all enclosures; below twice the step the minimum might be outside.
+    // 0x1p-40: choice: held coordinates move by that share of the smallest radius at least; 2.01: checker.md K28, above
+    // the 2 of clumps.md U8
     const double reach = std::max(0x1p-40 * e.state.packing.min_radius(), 2.01 * step);
-    if (!(reach < 0.125 * e.state.packing.min_radius())) {
+    if (!(reach < 0.125 * e.state.packing.min_radius())) { // cost: wider ones are given up as undecided
         return answer(check, Verdict::undecided, fmt::format("Newton's step is up to {:.3g}, too long", step));
     }
     const double swing = swing_above(motions);
@@ -287,6 +289,7 @@ ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
     if (!wide.vertex.found) {
         return answer(check, Verdict::undecided, "no vertices around the stored place are proved");
     }
+    // clumps.md U8, what the product of the lengths changes by
     if (const std::string why = not_positive(wide); !why.empty() || !(growth(wide) < 1.1)) {
         return answer(check, Verdict::undecided, why.empty() ? "the lengths are not known well enough" : why);
     }
@@ -296,7 +299,7 @@ ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
     const std::string found = fmt::format("d2W is at least {:.6g} times |dc|^2, claimed {:.6g}; Newton's step up to "
                                           "{:.3g}, defect of the inverse {:.3g}",
                                           curvature, claim.curvature, step, defect);
-    if (!(curvature >= claim.curvature) || !(defect < 0.25)) {
+    if (!(curvature >= claim.curvature) || !(defect < 0.25)) { // clumps.md U8, the defect of the inverse
         return answer(check, Verdict::undecided, found);
     }
     const Evidence nearer = evidence_around(e, swing, product_above(2, step));

@@ -14,10 +14,10 @@ namespace isostat::checker {
 namespace {
 
 /// Rounding of the quotient that is recorded as the stress at a limit.
-constexpr double limit_rounding = 0x1p-50;
+constexpr double limit_rounding = 0x1p-50; // choice: roundings of a quotient (checker.md limit_rounding)
 
 /// Tolerance relative to the largest stress, where the changing stress is near 0, as a shear stress is.
-constexpr double load_tolerance = 1e-6;
+constexpr double load_tolerance = 1e-6; // checker.md load_tolerance
 
 /// The largest accepted bound of an end of the supported interval.
 double loosest_end(const Place& place, const Bounded& stress) {

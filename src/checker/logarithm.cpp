@@ -4,8 +4,9 @@ namespace isostat::checker {
 
 namespace {
 
-constexpr long digits = 512;  ///< of the terms, after the binary point
-constexpr long widest = 1024; ///< beyond, the series takes too long, and 0 <= ln x <= x - 1 is used
+constexpr long digits = 512; ///< of the terms, after the binary point; cost: bits of a logarithm (checker.md K27)
+// cost: beyond, the series takes too long, and 0 <= ln x <= x - 1 is used (checker.md K27)
+constexpr long widest = 1024;
 
 /// z + z^3/3 + z^5/5 + ... without the remainder, in units of 2^-digits. `terms`: their number.
 Integer series(const Integer& z, long& terms) {

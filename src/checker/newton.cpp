@@ -7,9 +7,9 @@ namespace isostat::checker {
 namespace {
 
 /// Factors that reduce a residual by a smaller factor are made anew.
-constexpr double slow = 0.25;
+constexpr double slow = 0.25; // cost: when factors are renewed
 /// The same where the contacts may be nearly singular: proofs go on with the last factors.
-constexpr double quick = 0x1p-10;
+constexpr double quick = 0x1p-10; // cost: when factors are renewed where contacts may be nearly singular
 
 #ifdef __SIZEOF_FLOAT128__
 // __extension__ has no form with `using`: NOLINTNEXTLINE(modernize-use-using)
@@ -133,7 +133,7 @@ bool System::motion(const std::vector<double>& q, std::size_t opened, Eigen::Vec
             v = kernel(opened);
         }
         double size = std::numeric_limits<double>::infinity();
-        for (int k = 0; k < 30 && solver_->usable(); ++k) {
+        for (int k = 0; k < 30 && solver_->usable(); ++k) { // cost: Newton steps of the look
             Eigen::VectorXd residual = -product(q, v);
             residual(static_cast<Eigen::Index>(opened)) += 1;
             const double now = residual.lpNorm<Eigen::Infinity>();
@@ -159,12 +159,13 @@ std::optional<double> System::newton(std::vector<double>& q, const std::optional
     }
     double last = std::numeric_limits<double>::infinity();
     int renewals = 0;
-    for (int k = 0; k < 100 && solver_->usable(); ++k) {
+    for (int k = 0; k < 100 && solver_->usable(); ++k) { // cost: Newton steps of the look
         const Eigen::VectorXd x = step_at(q, way);
         const double size = x.lpNorm<Eigen::Infinity>();
         if (!std::isfinite(size)) {
             return {};
         }
+        // choice: when the look's Newton has converged
         const bool rounded = size <= 0x1p-38 * scale; // rounding: new factors would not help
         const bool smaller = size < (rounded ? 1 : slow) * last;
         const bool ends = size <= accuracy * scale || (!smaller && rounded);
@@ -178,7 +179,7 @@ std::optional<double> System::newton(std::vector<double>& q, const std::optional
         }
         if (smaller) {
             last = size;
-        } else if (++renewals > 20) {
+        } else if (++renewals > 20) { // cost: factors renewed
             return {};
         } else {
             renew(q);
@@ -192,13 +193,13 @@ double System::spread() const {
     const double scale = packing_.max_radius();
     Eigen::VectorXd mixed(static_cast<Eigen::Index>(contacts_.size()));
     for (Eigen::Index l = 0; l < mixed.size(); ++l) {
-        mixed(l) = (l * l + l / 3) % 7 < 3 ? -scale * scale : scale * scale;
+        mixed(l) = (l * l + l / 3) % 7 < 3 ? -scale * scale : scale * scale; // guess: mixed signs
     }
     return step(mixed).lpNorm<Eigen::Infinity>() / scale;
 }
 
 bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way>& way) {
-    constexpr int most = 60; // steps halve the distance to one of two nearby zeros
+    constexpr int most = 60; // steps halve the distance to one of two nearby zeros; cost: Newton steps of the look
     const double scale = packing_.max_radius();
     std::vector<Quadruple> at(q.begin(), q.end());
     double last = std::numeric_limits<double>::infinity();
@@ -223,6 +224,7 @@ bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way
             at[coordinate(d)] += x(static_cast<Eigen::Index>(d));
             q[coordinate(d)] = static_cast<double>(at[coordinate(d)]);
         }
+        // choice: when the look's Newton has converged
         if (size <= (stale ? 0x1p-46 : 0x1p-38) * scale) { // the next step would be its square, or rounding
             return true;
         }

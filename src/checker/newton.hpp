@@ -34,6 +34,7 @@ class System {
     [[nodiscard]] std::shared_ptr<const Solver> solver() const { return solver_; }
 
     /// A(q) v = e_opened, its residual rounded to so many bits; on entry v is a guess, or empty.
+    // choice: rounding of the velocity of a step
     bool motion(const std::vector<double>& q, std::size_t opened, Eigen::VectorXd& v, int bits = 46);
     /// Newton to a zero of all F except that of contact `left_out`, with a degree of freedom kept in place; the
     /// iteration ends at steps of the largest radius times `accuracy`, or where rounding lets them fall no more. The

@@ -77,6 +77,7 @@ template <int K> class BlockFactor : public NormalFactor {
         std::vector<double> terms(at(nodes_)); // at most, of one entry
         for (std::size_t i = 0; i < terms.size(); ++i) {
             terms[i] =
+                // checker.md K30 (terms of an entry)
                 static_cast<double>(parts_at_[i].size() + K * (pattern_.first[i + 1] - pattern_.first[i] + 1) + 4);
         }
         std::vector<Column> sum(at(nodes_), Column::Zero()); // (|A|^T |A| + |L| |L|^T) times them
@@ -103,6 +104,8 @@ template <int K> class BlockFactor : public NormalFactor {
         for (std::size_t i = 0; i < terms.size(); ++i) {
             largest = std::max(largest, sum[i].maxCoeff() + shift * terms[i]);
         }
+        // 1.02: checker.md K30 (gamma and sums); 0x1p-53: exact: u, the unit of rounding; 0x1p-900: checker.md K30
+        // (underflow)
         return 1.02 * 0x1p-53 * largest + 0x1p-900;
     }
 
@@ -184,14 +187,14 @@ template <int K> class BlockFactor : public NormalFactor {
 
     /// Columns of large norm, those of walls, times powers of two below 1: that makes no singular value larger.
     void lessen_columns() {
-        constexpr double largest = 4;
+        constexpr double largest = 4; // cost: columns that are scaled
         std::vector<double> square(at(K * nodes_), 0.0);
         for (std::size_t p = 0; p < a_.value.size(); ++p) {
             square[at(a_.column[p])] += a_.value[p] * a_.value[p];
         }
         scale_.assign(square.size(), 1.0);
         for (std::size_t k = 0; k < square.size(); ++k) {
-            for (; square[k] > largest; square[k] /= 4) {
+            for (; square[k] > largest; square[k] /= 4) { // exact: the square of 2
                 scale_[k] /= 2;
             }
         }
@@ -260,7 +263,7 @@ std::unique_ptr<NormalFactor> normal_factor(int dimension, const SparseRows<doub
     if (dimension == plane) {
         return std::make_unique<BlockFactor<2>>(a, order);
     }
-    return std::make_unique<BlockFactor<3>>(a, order);
+    return std::make_unique<BlockFactor<3>>(a, order); // exact: coordinates of a sphere
 }
 
 } // namespace isostat::checker

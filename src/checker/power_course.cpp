@@ -8,7 +8,7 @@ namespace isostat::checker {
 
 namespace {
 
-constexpr int most_halvings = 30;
+constexpr int most_halvings = 30; // cost: halvings of a stretch
 
 Bounds value_of(const std::vector<Bounds>& c, const Bounds& s) {
     Bounds sum(0);

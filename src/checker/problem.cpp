@@ -18,6 +18,7 @@ long granularity(double value, long if_zero) {
         return if_zero;
     }
     int exponent = 0;
+    // 53: exact: bits of a double
     const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(std::abs(value), &exponent), 53));
     return exponent - 53 + std::countr_zero(static_cast<std::uint64_t>(mantissa));
 }
@@ -26,7 +27,7 @@ long granularity(double value, long if_zero) {
 template <class Number> Number in_units(double value, long unit) {
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);
-    Number result(static_cast<long>(std::ldexp(fraction, 53))); // exact: at most 53 bits
+    Number result(static_cast<long>(std::ldexp(fraction, 53))); // 53: exact: bits of a double
     const long shift = value == 0 ? 0 : exponent - 53 - unit;
     if (shift >= 0) {
         result <<= static_cast<unsigned long>(shift);
@@ -301,6 +302,7 @@ Problem::Problem(const State& state, bool held_allowed, int asked)
     }
     // A separation is the sum of so many lengths, each of which may double on the way to the vertex (K26).
     const long largest = length_bits + 1 + std::bit_width(static_cast<unsigned>(spread));
+    // checker.md K26 (separations, weights)
     largest <= 125 && weight_bits + 1 < 125 ? find_lengths<Wide>(state) : find_lengths<Integer>(state);
     find_contacts_of(state);
 }

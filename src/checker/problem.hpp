@@ -67,14 +67,14 @@ struct Row {
 };
 
 /// `Problem::digits` of the vertices of a run, most of which are passed on the way.
-inline constexpr int few_digits = 56;
+inline constexpr int few_digits = 56; // checker.md K4 (56 bits finer on the way)
 /// The same when more are not asked for.
-inline constexpr int usual_digits = 80;
+inline constexpr int usual_digits = 80; // checker.md K4 (80 bits finer)
 /// Asked next where those do not tell, and from the beginning where radii are R_i + eps rho_i: records of such runs
 /// call a number 0 only below 2^-1000, and bounds of others may end next to the number.
-inline constexpr int more_digits = 320;
+inline constexpr int more_digits = 320; // cost: digits with which a check is asked again
 /// Of a question that stays open with fewer.
-inline constexpr int most_digits = 1280;
+inline constexpr int most_digits = 1280; // cost: digits with which a check is asked again
 
 /// Two lengths whose sum is the distance at which a contact, a bar or a pair is closed: radii, or the length of the bar
 /// and 0; of a held coordinate zeros. \pre a bar is one of the packing

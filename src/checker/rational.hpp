@@ -69,7 +69,9 @@ inline Rational power_of_two(long exponent) {
 
 /// value * 2^exponent as `std::ldexp` rounds it, without a call: there are millions.
 inline double times_power(double value, long exponent) {
+    // 1023: exact: the bias of the exponent of a double; 1024: exact: the first exponent that no double has
     const bool normal = exponent > -1023 && exponent < 1024;
+    // exact: bits of the fraction of a double
     const auto bits_of = [](long e) { return static_cast<std::uint64_t>(e + 1023) << 52U; };
     return normal ? value * std::bit_cast<double>(bits_of(exponent)) : std::ldexp(value, static_cast<int>(exponent));
 }
@@ -78,6 +80,7 @@ inline double times_power(double value, long exponent) {
 inline double approximate(const Integer& value, long exponent) {
     long own = 0;
     const double mantissa = mpz_get_d_2exp(&own, value.get_mpz_t());
+    // exact: beyond the exponents of doubles
     return std::ldexp(mantissa, static_cast<int>(std::min<long>(std::max<long>(own + exponent, -5000), 5000)));
 }
 
@@ -106,6 +109,7 @@ inline Rational short_above(const Rational& value) {
     if (value == 0) {
         return value;
     }
+    // exact: bits of a rounded ratio, direction known
     const long shift = 256 - bits(value.get_num()) + bits(value.get_den());
     return dyadic(ceiling_of(value, shift), -shift);
 }

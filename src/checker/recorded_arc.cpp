@@ -113,11 +113,12 @@ Followed follow(const ArcStart& from, const EventRecord& event, const Opening& o
         at.q = q;
         return load_at(load, at, opening.rattles);
     };
-    constexpr int finest = 2; // two branches of the curve may be near each other
-    motion.zooms = slowly ? 3 : 0;
+    constexpr int finest = 2;      // two branches of the curve may be near each other
+    motion.zooms = slowly ? 3 : 0; // choice: how often the last step is made anew, shorter
     Followed followed;
     for (int finer = slowly ? 1 : 0; finer <= finest && !followed.end; ++finer) {
-        motion.step = std::ldexp(Motion().step, -4 * finer);
+        motion.step = std::ldexp(Motion().step, -4 * finer); // cost: steps shorter by 2^-4 where the look failed
+        // guess: how much shorter the first steps of a look are, as a power of 2
         motion.doublings = finer > 0 ? 20 : 0; // branches cross where contacts are nearly singular at the start
         followed = follow(from.state, motion);
     }

@@ -22,13 +22,13 @@ using Objections = std::optional<Objection>;
 
 /// Relative size of the agreement of recorded numbers without a bound, which were computed in double. Bounds of a
 /// length, a strain or the potential may not be larger.
-inline constexpr double record_tolerance = 1e-9;
+inline constexpr double record_tolerance = 1e-9; // checker.md record_tolerance
 /// Such a tolerance for the strain at the end of an arc.
-inline constexpr double arc_strain_tolerance = 1e-6;
+inline constexpr double arc_strain_tolerance = 1e-6; // checker.md arc_strain_tolerance
 /// Such a tolerance for bounds of forces and of ends of intervals, which grow with the condition number.
-inline constexpr double force_tolerance = 1e-3;
+inline constexpr double force_tolerance = 1e-3; // checker.md force_tolerance
 /// A power turn is located in double: the power there, and the rate of the held coordinate, agree up to this.
-inline constexpr double turn_tolerance = 1e-6;
+inline constexpr double turn_tolerance = 1e-6; // checker.md turn_tolerance
 
 /// The exact stress minus the stored stress of a state, and the first-order term of the stress: different from 0 only
 /// for runs whose ties were settled at first order, after a limit load.

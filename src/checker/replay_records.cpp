@@ -17,6 +17,7 @@ namespace {
 /// Compares a recorded number with the found one, up to `record_tolerance` of `size`.
 Objections compare(const std::string& name, double recorded, const Range& found, double size) {
     const Rational room =
+        // exact: not 0
         Rational(record_tolerance) * Rational(std::clamp(size, 1e-300, std::numeric_limits<double>::max()));
     if (std::isfinite(recorded) && Rational(recorded) >= found.lower - room &&
         Rational(recorded) <= found.upper + room) {
@@ -242,7 +243,7 @@ template <class Settled> Objections check_no_overlap(const Place& place, const c
 
 /// Checks that the recorded power is 0 where the arc ends at a power turn.
 Objections check_power_at_turn(const Place& to, const EventRecord& event) {
-    const double room = turn_tolerance * std::max(1e-300, largest_force(to.evidence->forces));
+    const double room = turn_tolerance * std::max(1e-300, largest_force(to.evidence->forces)); // exact: not 0
     if (!(std::abs(event.power) <= room) || !std::isnan(event.power_bound)) {
         return Objection{true, fmt::format("the power is {} +- {} at a power turn: expected 0, without a bound",
                                            event.power, event.power_bound)};
@@ -328,7 +329,7 @@ Objections check_forces(const Place& place) {
     const std::string found = fmt::format("no equilibrium: the {}force of {} is in {}", rattler ? "infinitesimal " : "",
                                           e.name(l), shown(forces[l]));
     // Where the load of an axis is 0 counting makes forces vanish that the run only saw near 0, and left at 0 by
-    // choice: an equilibrium of the finite loads, for any infinitesimal ones (C1).
+    // choice, which is an equilibrium of the finite loads for any infinitesimal ones (C1).
     const bool left = rattler && is_left(place, l);
     return Objection{wrong && !left, left ? found + ", which the run left at 0" : found};
 }
@@ -552,7 +553,7 @@ Objections check_coordinates(const Place& place, const State& stored, bool given
     }
     const System system(stored.packing, stored.contacts);
     const auto closed = [&](const Contact& contact) {
-        constexpr double rounding = 0x1p-40;
+        constexpr double rounding = 0x1p-40; // choice: gaps of a stored state that is as closed as doubles allow
         return given || contact.kind == ContactKind::held ||
                std::abs(system.value(stored.packing.q, contact)) <= rounding * size;
     };
@@ -611,7 +612,7 @@ Objections check_stored_forces(const Place& place, const std::vector<double>& fo
     if (!forces.empty() && forces.size() != e.forces.size()) {
         return Objection{true, fmt::format("{} forces for {} contacts", forces.size(), e.forces.size())};
     }
-    const double size = 100 * largest_force(e.forces);
+    const double size = 100 * largest_force(e.forces); // choice: tolerance of stored forces (checker.md)
     for (std::size_t l = 0; l < forces.size(); ++l) {
         if (Objections wrong = compare("the stored force of " + e.name(l), forces[l], e.forces[l], size)) {
             return wrong;

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+// exact: all other numbers of this file: splitmix64, what the rule random draws
+
 namespace isostat::checker {
 
 bool grains_bear_force(const Place& place, std::size_t contact) {
@@ -86,7 +88,7 @@ ChoiceRule opening_choice(const Place& place, std::size_t opened, const std::str
 /// A released coordinate is held again at once, which leaves no record (descent.md): with the held value moved by the
 /// accuracy of the turn its multiplier has the other sign, so the power vanished before.
 bool turns_back_at_once(const Place& place, std::size_t contact, bool finite) {
-    constexpr double last_bits = 0x1p-40; // of the largest radius
+    constexpr double last_bits = 0x1p-40; // of the largest radius; checker.md turns_back_at_once
     if (!place.is_held(contact)) {
         return false;
     }

@@ -207,7 +207,7 @@ std::vector<std::string> files_apart(const RunRecords& records) {
     for (const std::string& name : content.files) {
         const std::size_t number = name.find("/eq_") + std::string_view("/eq_").size();
         const std::string digits = name.substr(std::min(number, name.size()), name.rfind('.') - number);
-        constexpr std::size_t most_digits_of_int = 9;
+        constexpr std::size_t most_digits_of_int = 9; // exact: decimal digits that always fit an int
         if ((name.starts_with("states/eq_") || name.starts_with("certificates/eq_")) &&
             (digits.size() > most_digits_of_int || std::stoi(digits) >= rows)) {
             notes.push_back(fmt::format("{} is of no equilibrium of this run: it was left alone", name));

@@ -16,6 +16,7 @@ namespace {
 
 using json::Field;
 
+// exact: length of a name
 constexpr std::array<std::string_view, 5> statuses{"running", "completed", "failed", "undecided", "interrupted"};
 
 /// Complete lines with their numbers, from 1.

@@ -19,12 +19,12 @@ namespace isostat::checker {
 namespace {
 
 /// Entries of A and of the factor are integers times 2^-point, in units of a power of two above all of A.
-constexpr long point = 54;
+constexpr long point = 54; // checker.md K15
 /// Sums of magnitudes of products stay below 2^125 (K15).
-constexpr double largest_square = 0x1p16;
+constexpr double largest_square = 0x1p16; // checker.md K15
 /// Entries of the residual, of which up to 2^24 are added.
-constexpr long residual_bits = 100;
-constexpr int most_rows = 1 << 24;
+constexpr long residual_bits = 100; // checker.md K15
+constexpr int most_rows = 1 << 24;  // checker.md K15
 
 /// value * 2^shift, rounded towards zero. \pre it fits.
 std::int64_t whole_part(const Integer& value, long shift) {
@@ -69,7 +69,7 @@ template <class Value> struct Entries : SparseRows<Value> {
         }
         const long factors = std::bit_width(static_cast<unsigned>(most_periods - 1));
         scale += factors;
-        column.reserve(4 * problem.rows.size());
+        column.reserve(4 * problem.rows.size()); // cost: memory
         value.reserve(column.capacity());
         touching = std::max(touching, problem.contacts_of.lengths().second);
         Number entry;
@@ -185,12 +185,12 @@ class Factor {
 
     /// An estimate of the smallest eigenvalue of L L^T by some inverse iterations, seldom much above it.
     [[nodiscard]] double smallest_eigenvalue() const {
-        constexpr int steps = 8;
+        constexpr int steps = 8; // guess: iterations
         Eigen::VectorXd x(static_cast<Eigen::Index>(n_));
         std::uint32_t state = 1;
-        for (double& component : x) { // any vector serves, but always the same one
-            state = 1664525U * state + 1013904223U;
-            component = static_cast<double>(state) * 0x1p-32 - 0.5;
+        for (double& component : x) {                               // any vector serves, but always the same one
+            state = 1664525U * state + 1013904223U;                 // guess: random numbers
+            component = static_cast<double>(state) * 0x1p-32 - 0.5; // guess: start of the iteration
         }
         double eigenvalue = 0;
         for (int step = 0; step < steps; ++step) {
@@ -213,7 +213,7 @@ class Factor {
             const int k = pattern_.column[c];
             const Wide sought = std::exchange(x_[at(k)], 0);
             const double quotient = as_double(sought) / static_cast<double>(diagonal_[at(k)]);
-            if (!(std::abs(quotient) < 0x1p62)) {
+            if (!(std::abs(quotient) < 0x1p62)) { // checker.md K15 (quotients)
                 return false;
             }
             const auto entry = static_cast<std::int64_t>(quotient);
@@ -283,6 +283,7 @@ std::optional<Rational> bound_in_double(const Problem& problem, const std::vecto
     if (!(square > 0)) {
         return {};
     }
+    // checker.md K30 (rounding of an entry)
     const Rational bound = Rational(next_below(std::sqrt(square))) - dyadic(a.rounding(), -51);
     return bound > 0 ? std::optional<Rational>(bound * power_of_two(a.scale + problem.fine)) : std::nullopt;
 }
@@ -344,8 +345,8 @@ std::optional<Rational> smallest_singular_value(const Problem& problem, const st
         return std::nullopt;
     }
     double shift = factor.smallest_eigenvalue();
-    for (int attempt = 0; attempt < 3; ++attempt) {
-        shift *= attempt == 0 ? 0.7 : 0.2;
+    for (int attempt = 0; attempt < 3; ++attempt) { // cost: shifts tried
+        shift *= attempt == 0 ? 0.7 : 0.2;          // 0.7: guess: shift (checker.md K15); 0.2: guess: shift
         if (!(shift > 0 && shift < 1)) {
             return std::nullopt;
         }

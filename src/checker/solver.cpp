@@ -18,7 +18,7 @@ void add_scaled(Integer& target, double value, long shift) {
     }
     static thread_local Integer part; // called millions of times, so memory is allocated once
     int exponent = 0;
-    part = static_cast<long>(std::ldexp(std::frexp(value, &exponent), 53));
+    part = static_cast<long>(std::ldexp(std::frexp(value, &exponent), 53)); // 53: exact: bits of a double
     const long left = exponent - 53 + shift;
     if (left >= 0) {
         mpz_mul_2exp(part.get_mpz_t(), part.get_mpz_t(), static_cast<mp_bitcnt_t>(left));
@@ -43,8 +43,8 @@ struct Solver::Factors {
     /// `like`: has orders that may serve, or null. `quick`: of A^T A, if its Cholesky factor exists.
     Factors(const Structure& structure, SparseRows<double> a, const Factors* like, bool quick)
         : size(static_cast<int>(structure.rows.size())) {
-        constexpr int longest = 16;
-        constexpr double most_fill = 1.25;
+        constexpr int longest = 16;        // cost: lists with the same orders
+        constexpr double most_fill = 1.25; // cost: fill of kept orders
         const bool known = like != nullptr && like->size == size && like->kept < longest &&
                            like->normal->entries() <= most_fill * like->entries;
         order = known ? like->order : order_of_normal(structure);
@@ -73,7 +73,8 @@ struct Solver::Factors {
     /// KLU solves in a workspace of the factors, so each thread uses its own.
     template <class Solve> [[nodiscard]] Eigen::MatrixXd solved(Eigen::MatrixXd b, Solve solve) const {
         static thread_local std::vector<double> work;
-        work.resize(std::max(work.size(), 4 * static_cast<std::size_t>(size))); // four right-hand sides at once
+        // exact: right-hand sides that KLU solves at once
+        work.resize(std::max(work.size(), 4 * static_cast<std::size_t>(size)));
         klu_numeric own = *numeric;
         own.Xwork = work.data();
         klu_common status = common;

@@ -45,6 +45,7 @@ inline bool add_scaled(Wide& target, double value, long shift, long most) {
     if (!(std::abs(step) < times_power(1, most))) {
         return false;
     }
+    // exact: below the largest integer of 64 bits
     target += std::abs(step) < 0x1p62 ? static_cast<std::int64_t>(step) : static_cast<Wide>(step); // a call
     return bits(target) <= most;
 }

@@ -96,6 +96,7 @@ struct Bare {
             const Vector n = outward(state, state.contacts[two[0]], disk);
             const Vector m = outward(state, state.contacts[two[1]], disk);
             const double sine = n[0] * m[1] - n[1] * m[0];
+            // choice: not in one line (stability.md S4 (c))
             if (std::abs(sine) < 1e-4) { // far above turn_tolerance: not in one line at the turn either
                 continue;
             }
@@ -278,7 +279,7 @@ std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b)
                     room += bare.load_room[i];
                 }
             }
-            along += 0.5 * load * (n[k] - m[k]);
+            along += 0.5 * load * (n[k] - m[k]); // stability.md S4 (mean of two normals)
             room += size * (std::hypot(n[0] + m[0], n[1] + m[1]) + turn_tolerance);
         }
         // S4 (b): f_b - f_a = -along

@@ -140,6 +140,7 @@ struct Arc {
 
     /// The rule chose between two contacts that first-order terms do not separate, by the record and as found.
     [[nodiscard]] Objections check_tied(const TieRecord& tie) const {
+        // 0x1p-50: exact: rounding of recorded differences is less (checker.md K22)
         const Rational room = (Rational(tie.first_bound) + Rational(tie.other_bound)) * (1 + Rational(0x1p-50)) +
                               Rational(0x1p-50) * (abs(Rational(tie.first)) + abs(Rational(tie.other)));
         const bool recorded = abs(Rational(tie.first) - Rational(tie.other)) <= room;

@@ -10,7 +10,7 @@ namespace isostat::checker {
 
 namespace {
 
-constexpr std::size_t highest_order = 14;
+constexpr std::size_t highest_order = 14; // cost: order of the polynomial
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// sum_k c_k h^k from `first` on, times k when `slope` (then h^(k-1)).
@@ -146,7 +146,7 @@ namespace {
 /// The parts of a configuration that D_l depends on: blocks of coordinates
 /// (disks, and the cell behind them), each with a factor for its norm.
 struct Blocks {
-    std::array<std::size_t, 3> block{};
+    std::array<std::size_t, 3> block{}; // 3: exact: blocks that a contact touches
     std::array<double, 3> weight{};
     std::size_t count = 0;
 
@@ -242,9 +242,10 @@ void Tube::expand() {
         }
     }
     spread_ = std::max(2.0, *std::max_element(spread.begin(), spread.end()));
+    // exact: smallest curvature, squared (checker.md K16)
     curvature_ = root_above(std::max(4.0, *std::max_element(fourth.begin(), fourth.end())));
     const double unit = moving_.state.packing.min_radius();
-    longest_ = 0.2 * unit;
+    longest_ = 0.2 * unit; // cost: longest piece
     std::vector<double> right(contacts + 1, 0.0);
     right[contacts] = weight_ * direction_;
     const Layout layout = moving_.state.packing.layout();
@@ -261,7 +262,7 @@ void Tube::expand() {
         for (const double x : a) {
             largest = std::max(largest, std::abs(x));
         }
-        if (!(largest < 1e100)) {
+        if (!(largest < 1e100)) { // cost: order of the polynomial
             break;
         }
         auto& mine = differences.emplace_back(contacts, Separation<double>(layout.axes()));
@@ -272,6 +273,7 @@ void Tube::expand() {
             }
         }
         a_.push_back(std::move(a));
+        // cost: order of the polynomial
         if (k > 1 && largest * std::pow(longest_, static_cast<double>(k)) < 0x1p-58 * unit) {
             break;
         }
@@ -281,7 +283,7 @@ void Tube::expand() {
             for (std::size_t i = 0; i < k && moving_.kept[l].of_disks(); ++i) {
                 sum += product(differences[i][l], differences[k - 1 - i][l]);
             }
-            right[l] = -0.5 * sum;
+            right[l] = -0.5 * sum; // exact: a half (checker.md K16)
         }
     }
 }
@@ -318,7 +320,7 @@ void Tube::bound_residuals() {
             continue;
         }
         const Bounds sum = Bounds(one) + other;
-        residual[0] = ((product(d[0], d[0]) - sum * sum) * 0.5).size();
+        residual[0] = ((product(d[0], d[0]) - sum * sum) * 0.5).size(); // 0.5: exact: a half (checker.md K16)
         for (std::size_t k = 1; k <= 2 * order; ++k) {
             Bounds value(0);
             for (std::size_t m = k > order ? k - order : 1; m <= std::min(order, k - 1); ++m) {
@@ -351,7 +353,7 @@ double Tube::change_norm(double h) const {
     }
     std::vector<double> x(disks + 1, 1.0);
     double best = infinity;
-    for (int round = 0; round < 5; ++round) {
+    for (int round = 0; round < 5; ++round) { // cost: vectors of Collatz and Wielandt
         std::vector<double> z(disks + 1, 0.0);
         for (std::size_t l = 0; l < e.size(); ++l) {
             if (e[l] == 0) {
@@ -376,7 +378,7 @@ double Tube::change_norm(double h) const {
         }
         best = std::min(best, ratio);
         for (std::size_t i = 0; i <= disks; ++i) {
-            x[i] = z[i] + 1e-3 * most + std::numeric_limits<double>::min();
+            x[i] = z[i] + 1e-3 * most + std::numeric_limits<double>::min(); // guess: the vector of Collatz and Wielandt
         }
     }
     return root_above(best);
@@ -384,7 +386,7 @@ double Tube::change_norm(double h) const {
 
 bool Tube::holds(double h) {
     const double left = next_below(sigma_ - change_norm(h)); // bound of the smallest singular value, at every p(s)
-    if (!(left > 0.1 * sigma_)) {
+    if (!(left > 0.1 * sigma_)) {                            // cost: what a piece may take of the singular value
         return false;
     }
     std::vector<double> values;
@@ -399,6 +401,7 @@ bool Tube::holds(double h) {
     }
     const double rho = norm_above(values);
     const double beta = quotient_above(1, left);
+    // checker.md K16 (4 L rho)
     const double product = product_above(product_above(product_above(4, curvature_), rho), product_above(beta, beta));
     if (!(product <= 1)) {
         return false;
@@ -419,8 +422,8 @@ bool Tube::holds(double h) {
 }
 
 bool Tube::prove() {
-    double turning = change_norm(1e-6 * longest_) * 1e6 / longest_;
-    double h = std::min(longest_, turning > 0 ? 0.75 * sigma_ / turning : longest_);
+    double turning = change_norm(1e-6 * longest_) * 1e6 / longest_; // guess: rate of change of the derivative
+    double h = std::min(longest_, turning > 0 ? 0.75 * sigma_ / turning : longest_); // cost: longest piece
     // No farther than where the polynomial is about as good as the centre, as a wide tube leaves gaps and power open.
     const auto norm = [this](std::size_t first, double s) {
         std::vector<double> values;
@@ -430,11 +433,11 @@ bool Tube::prove() {
         return norm_above(values);
     };
     const double at_centre = norm(0, 0);
-    const double least = 0.1 * h;
-    while (h > least && norm(1, h) > 4 * at_centre) {
-        h *= 0.85;
+    const double least = 0.1 * h;                     // cost: shortest piece
+    while (h > least && norm(1, h) > 4 * at_centre) { // cost: a piece as good as its centre
+        h *= 0.85;                                    // cost: next shorter piece
     }
-    for (; h > 1e-10 * longest_; h *= 0.7) {
+    for (; h > 1e-10 * longest_; h *= 0.7) { // 1e-10: cost: shortest piece; 0.7: cost: next shorter piece
         if (holds(h)) {
             return true;
         }
@@ -528,7 +531,7 @@ std::vector<double> Tube::corrected(double s) const {
     std::vector<double> q = point(s, unused);
     const Packing& packing = moving_.state.packing;
     const Layout layout = packing.layout();
-    for (int step = 0; step < 4; ++step) {
+    for (int step = 0; step < 4; ++step) { // cost: Newton steps of a centre
         std::vector<double> right;
         for (const Contact& c : moving_.kept) {
             const Separation<Bounds> d = difference(q, c, layout);

@@ -23,9 +23,10 @@ struct Guess {
 
 /// Newton steps with the factorisation at the stored configuration and exact residuals. Nothing: the way is too long.
 template <class Number> std::optional<Guess> improved(const Problem& problem, const Solver& solver) {
-    constexpr int most_steps = 40;
+    constexpr int most_steps = 40; // guess: Newton steps
     std::vector<Number> q = problem.stored.in<Number>();
     long size = -1;
+    // cost: a residual of some units is not refined
     const long rounding = problem.sum.most_bits() + 3; // bits of the residual where a coordinate is off by some units
     static thread_local std::vector<Product<Number>> residual; // memory that serves one vertex after the other
     for (int step = 0;; ++step) {
@@ -62,6 +63,7 @@ template <class Number> std::optional<Guess> guess(const Problem& problem, const
 
 namespace {
 
+// checker.md K28, a row residual that is asked for and taken
 const Rational around_error(1, 16); // |R A v| <= (1 + |I - R A|) |v|
 
 } // namespace
@@ -118,7 +120,7 @@ double largest_unique_distance(const InverseBound& inverse, const TrueVertex& ve
         return std::numeric_limits<double>::infinity();
     }
     const Rational limit = 2 * *inverse.regular_within - vertex.moved_most;
-    return std::max(0.0, rounded_down(limit * (1 - power_of_two(-40))));
+    return std::max(0.0, rounded_down(limit * (1 - power_of_two(-40)))); // checker.md K5 (rounded down)
 }
 
 } // namespace isostat::checker

@@ -12,9 +12,9 @@ namespace isostat::checker {
 
 namespace {
 
-constexpr int most_pieces = 5000;
+constexpr int most_pieces = 5000; // cost: pieces of a way
 /// Share of a piece next to a limit or a power turn on which the power may stay open.
-constexpr double open_share = 1e-2;
+constexpr double open_share = 1e-2; // checker.md K20 (a hundredth)
 
 Objections open(std::string why) {
     return Objection{false, "the way is not proved: " + std::move(why)};
@@ -294,6 +294,7 @@ bool Follower::join_near(const std::vector<double>& q, double s, int row) {
 
 bool Follower::join_on_the_way(double reach) {
     bool found = false;
+    // 0.9: cost: way to a centre; 1e-3: cost: shortest way to a centre; 0.5: cost: next shorter way to a centre
     for (double share = 0.9; share > 1e-3 && !found && trouble_.empty(); share *= 0.5) {
         const double on = here_.upper + share * (reach - here_.upper);
         found = on > here_.upper && join_near(tube_->corrected(on), on, tube_->fastest(on));
@@ -312,7 +313,7 @@ Objections Follower::chain() {
         if (end && end->lower > here_.upper) {
             return arrive(*end);
         }
-        const double reach = tube_->reach() * (1 - 1e-9);
+        const double reach = tube_->reach() * (1 - 1e-9); // cost: within the reach
         // The next configuration of the witness; after all of these the end, with the row that is fastest here.
         const bool last = hint >= hints.size();
         const std::vector<double> q = last ? to_.state->packing.q : widened(hints[hint].q);

@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <type_traits>
 
+// exact: all other numbers of this file: half of 128 bits
+
 namespace isostat::checker {
 
 __extension__ using Wide = __int128;
@@ -55,7 +57,9 @@ inline long bits(Wide value) {
 }
 inline long bits(const Broad& value) {
     const Broad size = magnitude(value);
+    // exact: the sign of 128 bits
     const bool top = size.low >> 127U != 0; // of the lower half, which `bits` would take for a sign
+    // exact: half of 256 bits
     return size.high != 0 ? 128 + bits(size.high) : top ? 128 : bits(static_cast<Wide>(size.low));
 }
 /// Bits of the largest magnitude.
@@ -78,7 +82,7 @@ inline double approximate(const Broad& value, long exponent) {
         return 0x1p64 * static_cast<double>(static_cast<std::uint64_t>(of >> 64U)) +
                static_cast<double>(static_cast<std::uint64_t>(of));
     };
-    const double all = 0x1p128 * sum(static_cast<WideMagnitude>(size.high)) + sum(size.low);
+    const double all = 0x1p128 * sum(static_cast<WideMagnitude>(size.high)) + sum(size.low); // exact: half of 256 bits
     return times_power(value.high < 0 ? -all : all, exponent);
 }
 

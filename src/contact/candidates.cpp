@@ -58,6 +58,7 @@ double wall_rounding(const Packing& packing, const Contact& contact) {
     Separation(contact, packing.layout()).for_each_coordinate([&](std::size_t k, std::size_t, int) {
         lengths += std::abs(packing.q[k]);
     });
+    // contact_candidates.md wall_rounding
     return 0x1p-51 * (lengths + packing.radius[static_cast<std::size_t>(contact.i)]);
 }
 
@@ -89,7 +90,8 @@ std::optional<Contact> fixed_overlap(const Packing& packing) {
     };
     if (packing.cell.any() || std::ranges::find(packing.fixed, 1) != packing.fixed.end()) {
         for (const Contact& pair :
-             near_pairs(packing, 0.5 * packing.min_radius()).pairs) { // any positive reach will do
+             // contact_candidates.md T6 (half of the reach, and any reach finds overlaps)
+             near_pairs(packing, 0.5 * packing.min_radius()).pairs) {
             look(pair);
         }
         for_each_wall_contact(packing, look);
@@ -103,6 +105,8 @@ bool CandidateList::covers(const Packing& packing, double radius) const {
     }
     if (packing.cell.any()) {
         const CellDrift drift = cell_drift(*this, packing);
+        // 0.5: contact_candidates.md T6 (half of the reach, and any reach finds overlaps); 1e-14: contact_candidates.md
+        // covers
         return drift.used + drift.rate * radius < 0.5 * reach * (1 - 1e-14);
     }
     // 1e-14 covers the rounding of the differences and of the norm.
@@ -179,6 +183,7 @@ Admissibility certify_admissible(const Packing& packing, double allowance, const
         }
     } else {
         const auto from = known != nullptr ? known->triangulation : nullptr;
+        // contact_candidates.md T6 (half of the reach, and any reach finds overlaps)
         for (const Contact& contact : near_pairs(packing, 0.5 * packing.min_radius(), from).pairs) {
             look(contact);
         }

@@ -20,7 +20,7 @@ struct Extent {
         low = std::min(low, x);
         high = std::max(high, x);
     }
-    [[nodiscard]] double middle() const { return 0.5 * (low + high); }
+    [[nodiscard]] double middle() const { return 0.5 * (low + high); } // exact: a half (cells.md C8)
 };
 
 double length_of(const Packing& packing, const PerAxis<double>& x) {
@@ -69,6 +69,7 @@ struct Strain {
     }
 };
 
+// cells.md C8 (roundings)
 constexpr double rounding = 0x1p-46; // for two dozen operations on lengths, times strains up to 4
 
 /// The left-hand side of C8 for a displacement, without its roundings: moved(k) of coordinate k.
@@ -120,10 +121,10 @@ struct Used {
             }
             farthest = std::max(farthest, length_of(packing, off));
         }
-        const double stretched = packing.max_radius() + 0.5 * list.reach;
+        const double stretched = packing.max_radius() + 0.5 * list.reach; // exact: a half (cells.md C8)
         strain = Strain::norm(affine.e);
-        used = (farthest + strain * stretched) * (1 + 1e-12);
-        rate = (1 + (extent + stretched) * affine.inverse) * (1 + 1e-9);
+        used = (farthest + strain * stretched) * (1 + 1e-12);            // cells.md C8 (roundings of the sum)
+        rate = (1 + (extent + stretched) * affine.inverse) * (1 + 1e-9); // cells.md C8 (roundings of the rate)
     }
 };
 

@@ -24,7 +24,7 @@ std::string image_text(const Image& image, int dimension) {
 
 /// No square of a relevant component under- or overflows.
 bool in_range(double norm) {
-    return norm > 0x1p-450 && norm < 0x1p500;
+    return norm > 0x1p-450 && norm < 0x1p500; // precision.md B13
 }
 
 /// Multiplies d by a power of two, exactly, so that its largest

@@ -69,10 +69,11 @@ Range range_of(double s, double margin) {
 /// Largest distance, in periods, of disks with a gap below `reach`. The rounding of s and of the heights moves an image
 /// by far less than a hundredth of this margin.
 PerAxis<double> margin_of(const Packing& packing, double reach) {
-    const double near = 1.01 * (2 * packing.max_radius() + reach);
+    const double near = 1.01 * (2 * packing.max_radius() + reach); // cells.md C3, a hundredth wider
     const PerAxis<double> height = heights(packing);
     PerAxis<double> margin{};
     for (std::size_t a = 0; a < packing.axes(); ++a) {
+        // cells.md C3, rounding of fractional coordinates
         margin[a] = packing.cell.periodic[a] ? near / height[a] + 1e-9 : 0;
     }
     return margin;
@@ -119,7 +120,7 @@ Contact Images::contact(int a, int b) const {
 }
 
 Images images_near_cell(const Packing& packing, double reach) {
-    constexpr double most = 1e8;
+    constexpr double most = 1e8; // cost: then the cell is refused
     Images images;
     images.packing.dimension = packing.dimension;
     images.packing.walls = Walls::none();
@@ -151,7 +152,8 @@ Images images_near_cell(const Packing& packing, double reach) {
             }
         }
     }
-    images.rounding = 0x1p-40 * std::max(largest(packing.q), largest(images.packing.q)); // C3
+    // cells.md C3, rounding of centres
+    images.rounding = 0x1p-40 * std::max(largest(packing.q), largest(images.packing.q));
     images.packing.q.insert(images.packing.q.end(), packing.axes(), 0);
     return images;
 }

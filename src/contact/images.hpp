@@ -14,7 +14,7 @@ namespace isostat {
 
 /// At most this many periods along each axis are between a disk and an
 /// image in a pair, so that differences are exact (proofs/cells.md, C2).
-inline constexpr int farthest_image = 3;
+inline constexpr int farthest_image = 3; // cells.md C2 (differences are exact up to three periods)
 /// The limit for contacts of a vertex during a run, whose matrix has exact multiples of normals (C10).
 inline constexpr int farthest_contact = 2;
 
@@ -38,8 +38,8 @@ struct Images {
 };
 
 /// A disk may be at most this many periods from the origin, so that offsets and their differences fit into a byte.
-inline constexpr double farthest_disk = 30;
-inline constexpr double farthest_disk_of_a_run = 25;
+inline constexpr double farthest_disk = 30;          // exact: offsets and their differences fit into a byte
+inline constexpr double farthest_disk_of_a_run = 25; // exact: a run ends before a disk is beyond 30
 
 /// Words for the first disk that is `most` periods or more from the origin, or whose images that many periods apart may
 /// have a gap below `reach` (then `most` - 1); nothing: no such disk. Cost O(n).
@@ -62,7 +62,7 @@ inline double lengths_of_image(const Packing& packing, const Contact& pair) {
             periods += std::abs(m);
         }
     }
-    return sum * std::max(1.0, periods / 8);
+    return sum * std::max(1.0, periods / 8); // contact_candidates.md Filters (sums of an image)
 }
 
 } // namespace isostat

@@ -19,9 +19,11 @@ namespace {
 // Constants of proofs/contact_candidates.md, section "Rounded weights". Disks shrunk
 // by the common shift 0.002 R_min^2 of their weights have exactly the power diagram
 // of the rounded weights; an edge may overlap by half of what this shift allows.
-constexpr double edge_overlap = 0.0005; // times R_min^2 (1/R_i + 1/R_j)
-constexpr double largest_reach = 0.825; // times R_min; T6 allows 0.828, the rest is for rounding of images
-constexpr double largest_ratio = 1e5;   // beyond it the rounding of R_max^2 is not small compared with the shift
+constexpr double edge_overlap = 0.0005; // times R_min^2 (1/R_i + 1/R_j); contact_candidates.md T5 (rounded weights)
+// contact_candidates.md T6 allows 0.828 R_min: the rest is for the rounding of images
+constexpr double largest_reach = 0.825;
+// contact_candidates.md 1e5
+constexpr double largest_ratio = 1e5; // beyond it the rounding of R_max^2 is not small compared with the shift
 
 /// Gaps with a bound of their rounding: 8 u times the lengths that enter, for any coordinates.
 class Gaps {
@@ -38,6 +40,7 @@ class Gaps {
         const double distance =
             plain_ ? std::sqrt(dx * dx + dy * dy + dz * dz) : std::hypot(dx, dy, dz); // slow; error below 1 ulp
         const double radii = touching_distance(packing_.radius, pair);
+        // contact_candidates.md Filters (8u)
         return {distance - radii, 0x1p-50 * (distance + radii + lengths_of_image(packing_, pair))};
     }
 
@@ -53,7 +56,7 @@ std::optional<std::vector<Contact>> near_among(const Packing& packing, double re
     const double smallest = packing.min_radius();
     const auto share = [&](std::size_t i) { return smallest / packing.radius[i]; };
     std::vector<Contact> pairs;
-    pairs.reserve(3 * packing.radius.size());
+    pairs.reserve(3 * packing.radius.size()); // cost: memory reserved
     bool applies = true;
     for_each_edge([&](int first, int second) {
         const auto i = static_cast<std::size_t>(first);

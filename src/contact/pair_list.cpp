@@ -17,7 +17,7 @@ namespace {
 
 /// At most sqrt(n) disks are larger than this: one large disk among small ones would make the cells of a grid large.
 double common_radius(std::vector<double> radius) {
-    constexpr double comparable = 4;
+    constexpr double comparable = 4; // cost: larger disks are not in cells
     const std::size_t n = radius.size();
     const auto place = [&radius](std::size_t k) { return radius.begin() + static_cast<std::ptrdiff_t>(k); };
     std::nth_element(radius.begin(), place(n / 2), radius.end());
@@ -38,7 +38,7 @@ class Grid {
     Grid(int dimension, const std::vector<double>& x, const std::vector<double>& radius, double reach)
         : axes_(static_cast<std::size_t>(dimension)), cell_of_(radius.size(), apart) {
         const double common = common_radius(radius);
-        const double width = (2 * common + reach) * (1 + 1e-9);
+        const double width = (2 * common + reach) * (1 + 1e-9); // contact_candidates.md find_pairs
         const PerAxis<double> lowest = divide(x, width);
         for (std::size_t i = 0; i < radius.size(); ++i) {
             if (radius[i] > common) {
@@ -132,7 +132,7 @@ class Near {
           plain_(lengths_are_plain(x, radius)) {}
 
     bool operator()(int i, int j) const {
-        constexpr double up = 1 + 0x1p-46; // covers any rounding of the gap
+        constexpr double up = 1 + 0x1p-46; // covers any rounding of the gap; contact_candidates.md find_pairs
         const Contact pair{ContactKind::disk_disk, i, j};
         const double range = (touching_distance(radius_, pair) + reach_) * up;
         const Separation separation(pair, layout_);
@@ -155,8 +155,8 @@ class Near {
 } // namespace
 
 bool lengths_are_plain(const std::vector<double>& x, const std::vector<double>& radius) {
-    constexpr double largest = 1e100;   // squares neither overflow
-    constexpr double smallest = 1e-100; // nor underflow
+    constexpr double largest = 1e100;   // squares neither overflow; contact_candidates.md overflow
+    constexpr double smallest = 1e-100; // nor underflow; contact_candidates.md overflow
     return std::ranges::all_of(radius, [](double r) { return r >= smallest && r <= largest; }) &&
            std::ranges::all_of(x, [](double c) { return std::abs(c) <= largest; }); // also false for a NaN
 }

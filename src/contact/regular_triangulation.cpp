@@ -11,6 +11,8 @@
 #include <cassert>
 #include <utility>
 
+// exact: all other numbers of this file: corners of a face
+
 namespace isostat {
 
 namespace {
@@ -22,7 +24,7 @@ using Disk = Kernel::Weighted_point_2;
 /// least 3 R_max from every centre along each axis in spite of rounding.
 std::vector<Disk> weighted_points(const Packing& packing) {
     std::vector<Disk> points;
-    points.reserve(packing.radius.size() + 4);
+    points.reserve(packing.radius.size() + 4); // 4: contact_candidates.md Four disks far outside
     std::array<double, 2> low{packing.q[0], packing.q[1]};
     std::array<double, 2> high = low;
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
@@ -34,6 +36,7 @@ std::vector<Disk> weighted_points(const Packing& packing) {
     }
     const double extent = std::max(high[0] - low[0], high[1] - low[1]);
     const double largest = std::max({-low[0], -low[1], high[0], high[1]});
+    // contact_candidates.md Four disks far outside
     const double away = extent + 4 * packing.max_radius() + 0x1p-40 * largest;
     const double weight = packing.min_radius() * packing.min_radius();
     points.emplace_back(Kernel::Point_2(low[0] - away, low[1] - away), weight);

@@ -23,7 +23,7 @@ inline double euclidean_norm(std::span<const double> x) {
 /// addition. The order of additions is fixed, so the bits are the same everywhere.
 inline double dot(std::span<const double> a, std::span<const double> b) {
     assert(a.size() == b.size());
-    std::array<double, 4> sum{};
+    std::array<double, 4> sum{}; // 4: exact: numbers of a vector register
     std::size_t i = 0;
     for (; i + 4 <= a.size(); i += 4) {
         for (std::size_t k = 0; k < 4; ++k) {
@@ -33,13 +33,13 @@ inline double dot(std::span<const double> a, std::span<const double> b) {
     for (; i < a.size(); ++i) {
         sum[0] += a[i] * b[i];
     }
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]); // exact: the last of four sums
 }
 
 /// max |x_i|; 0 without components; NaN when a component is NaN, so that comparisons with the result fail. Several
 /// maxima at a time, as in `dot`.
 inline double largest(std::span<const double> x) {
-    constexpr std::size_t lanes = 8;
+    constexpr std::size_t lanes = 8; // exact: numbers of two vector registers
     std::array<double, lanes> most{};
     const auto take = [](double& largest, double size) {
         largest = size <= largest || std::isnan(largest) ? largest : size;

@@ -12,23 +12,24 @@ namespace {
 
 bool rounds_to_nearest() {
     const volatile double one = 1;
-    const volatile double half_ulp = 0x1p-53;
+    const volatile double half_ulp = 0x1p-53; // 0x1p-53: exact: u, the unit of rounding
+    // exact: above half a unit by what an extended format still sees
     const volatile double above_half_ulp = 0x1p-53 + 0x1p-78; // extended precision would round this sum twice, to 1
     const volatile double down = one + half_ulp;
     const volatile double up = one + above_half_ulp;
-    return down == 1 && up == 1 + 0x1p-52;
+    return down == 1 && up == 1 + 0x1p-52; // exact: from 1 to the next double
 }
 
 bool keeps_subnormals() {
-    const volatile double smallest_normal = 0x1p-1022;
-    const volatile double half = 0.5;
+    const volatile double smallest_normal = 0x1p-1022;        // exact: the smallest normal double
+    const volatile double half = 0.5;                         // exact: a half
     const volatile double subnormal = smallest_normal * half; // 0 when results are flushed
     return subnormal > 0;                                     // false when operands are
 }
 
 bool contracts() {
-    const volatile double given = 1 + 0x1p-27;
-    const volatile double rounded_square = 1 + 0x1p-26;
+    const volatile double given = 1 + 0x1p-27;          // exact: a probe whose square is no double
+    const volatile double rounded_square = 1 + 0x1p-26; // exact: sum of a probe
     const double x = given;
     const double y = rounded_square;
     const volatile double difference = x * x - y; // 2^-54 when the square is not rounded

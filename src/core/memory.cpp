@@ -35,8 +35,9 @@ void end_at_once(int status) {
 }
 
 void keep_freed_memory() {
+    // 64: cost: larger blocks come from the system; 20: exact: bytes of a MiB
     constexpr int large_block = 64 << 20; // above: from the system, and back to it
-    constexpr int kept = 256 << 20;
+    constexpr int kept = 256 << 20;       // cost: memory that is kept for the next use
     (void)mallopt(M_MMAP_THRESHOLD, large_block);
     (void)mallopt(M_TRIM_THRESHOLD, kept);
 }

@@ -60,7 +60,7 @@ void pause_briefly() {
 #endif
 }
 
-constexpr long longest_spin = 1000; // a pause is some 40 ns
+constexpr long longest_spin = 1000; // a pause is some 40 ns; cost: how long a thread waits awake
 
 } // namespace
 
@@ -160,7 +160,7 @@ class Pool {
 
     std::mutex guard_;
     std::deque<std::shared_ptr<Task::State>> tasks_;
-    alignas(64) std::atomic<int> waiting_{0}; ///< number of `tasks_`
+    alignas(64) std::atomic<int> waiting_{0}; ///< number of `tasks_`; cost: bytes of a cache line
     std::atomic<bool> ending_{false};
     std::vector<std::thread> workers_; ///< last: they use the rest
 };

@@ -17,7 +17,7 @@
 
 namespace isostat {
 
-using Wide = double __attribute__((vector_size(32)));
+using Wide = double __attribute__((vector_size(32))); // exact: bytes of four doubles
 
 // The argument is a reference because how a Wide is passed by value depends on the processor.
 ISOSTAT_WITHIN_WIDE void read(Wide& to, const double* from) {
@@ -28,7 +28,7 @@ ISOSTAT_WITHIN_WIDE void write(double* to, const Wide& from) {
 }
 
 /// Two numbers in one register.
-using Two = double __attribute__((vector_size(16)));
+using Two = double __attribute__((vector_size(16))); // exact: bytes of two doubles
 
 inline Two two_at(const double* v) {
     Two two;

@@ -33,7 +33,7 @@ void Acceleration::improve(std::vector<double>& y) {
         c[a] = dot(change(a).y, y);
     }
     for (std::size_t k = 0; k < known; ++k) {
-        const bool used = gram[k][k] > 1e-10 * whole[k];
+        const bool used = gram[k][k] > 1e-10 * whole[k]; // guess: of the path follower
         for (std::size_t a = k + 1; a < known; ++a) {
             const double factor = used ? gram[a][k] / gram[k][k] : 0.0;
             for (std::size_t b = k; b < known; ++b) {

@@ -16,8 +16,9 @@ namespace isostat {
 
 /// Choices of the path follower. They change the cost, not the events.
 struct ArcOptions {
+    // choice: first step of the path follower
     double step_fraction = 0.1;   ///< longest predictor step of the fastest coordinate, in units of the smallest radius
-    int max_steps = 100000;       ///< predictor steps before the motion is called unbounded
+    int max_steps = 100000;       ///< cost: after so many predictor steps the motion is called unbounded
     double max_length_change = 1; ///< |L_a / L_a(start) - 1| beyond which the motion is called unbounded
     /// The tangent at an event is extrapolated from the path instead of solved for, where no close decision depends on
     /// it: for callers that do not use `Arc::tangent`. Saves two passes or more.

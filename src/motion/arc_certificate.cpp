@@ -146,7 +146,7 @@ bool Certifier::check_vertex(const ArcVertex& vertex, const Contact& zero, const
 std::unique_ptr<CurvePiece> Certifier::proved_piece(const ArcCentre& centre, double forward) {
     auto piece = std::make_unique<Piece>(part_->curve(), centre, forward);
     const double floor = options_.smallest_step * start_.packing.min_radius();
-    for (double h = piece->natural_reach(); h > floor; h *= 0.6) {
+    for (double h = piece->natural_reach(); h > floor; h *= 0.6) { // guess: length of a piece
         if (piece->prove(h)) {
             return piece;
         }
@@ -313,7 +313,7 @@ std::optional<Certifier::Front> Certifier::ahead_of(const std::vector<double>& f
     const Piece& piece = *front_.piece;
     const double floor = options_.smallest_step * start_.packing.min_radius();
     std::string why = "the curve was not followed";
-    for (double ahead = 0.85 * to; ahead > floor; ahead *= 0.5) {
+    for (double ahead = 0.85 * to; ahead > floor; ahead *= 0.5) { // guess: next centre
         auto at = piece.corrected(to + ahead);
         if (!at) {
             continue;
@@ -354,9 +354,10 @@ bool Certifier::follow() {
         if (target && target->s > front_.from) {
             return arrive(piece, front_.from, front_.slack);
         }
-        const double to = piece.reach() * (1 - 1e-6);
+        const double to = piece.reach() * (1 - 1e-6); // guess: place on the piece
         const std::vector<double> frontier = piece.point(to);
         const double open =
+            // arcs.md A8 (a whole point)
             piece.radius() + std::sqrt(static_cast<double>(frontier.size())) * 0x1p-50 * largest(frontier);
         if (!aim_at_end(to)) {
             return refuse("no tube around the end");

@@ -20,7 +20,8 @@ struct ArcVertex {
 
 /// Caps of the proof; they change its cost and whether it succeeds, never what is proved.
 struct ArcCertificateOptions {
-    int max_pieces = 20000;      ///< pieces of the curve
+    int max_pieces = 20000; ///< pieces of the curve; cost: then the arc is undecided
+    // cost: then the arc is undecided
     double smallest_step = 1e-9; ///< shortest piece tried, in units of the smallest radius
 };
 

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+// guess: all other numbers of this file: of the path follower (arcs.md, status.md 1)
+
 namespace isostat {
 
 namespace {

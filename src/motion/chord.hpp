@@ -26,7 +26,7 @@ class Acceleration {
     void improve(std::vector<double>& y);
 
   private:
-    static constexpr std::size_t depth = 3;
+    static constexpr std::size_t depth = 3; // guess: of the path follower
     struct Change {
         std::vector<double> x, y; ///< changes of x and y in one iteration
     };

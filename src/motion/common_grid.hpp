@@ -24,6 +24,7 @@ inline bool fits_grid(const Packing& packing, double step) {
         }
         period = std::max(period, row);
     }
+    // 3: cells.md C11 (three periods); 0x1p53: cells.md C11 (exact separations)
     return 2 * farthest + 3 * period <= 0x1p53 * step;
 }
 

@@ -40,6 +40,7 @@ struct CurveCourse {
     [[nodiscard]] Packing predicted(double s) const {
         Packing there = at;
         for (std::size_t k = 0; k < there.q.size(); ++k) {
+            // 0.5: guess: of the path follower (arcs.md, status.md 1)
             there.q[k] += s * (tangent[k] + 0.5 * s * curvature[k]);
         }
         return there;
@@ -47,7 +48,7 @@ struct CurveCourse {
     /// The tangent at a point of the curve, extrapolated from the path: the third derivative comes from the error of
     /// the prediction. Below `shortest` this error is rounding, and the third derivative is left out.
     [[nodiscard]] std::vector<double> extrapolated_tangent(const Packing& there, double s, double shortest) const {
-        const double third = s > shortest ? 3 / s : 0.0;
+        const double third = s > shortest ? 3 / s : 0.0; // guess: of the path follower (arcs.md, status.md 1)
         std::vector<double> t(tangent.size());
         for (std::size_t k = 0; k < t.size(); ++k) {
             const double missed = there.q[k] - (at.q[k] + s * (tangent[k] + 0.5 * s * curvature[k]));

@@ -88,7 +88,7 @@ void CurvePiece::bound_coefficients_of(std::size_t l) {
     }
     // |F| <= |gap| (1 + |gap| / 2D), |gap| < 1e-3 D; the computed gap is off by less than 8u D.
     const double length = curve().target[l];
-    bound[0] = 1.001 * std::abs(gap(centre(), c)) + 8 * u * length;
+    bound[0] = 1.001 * std::abs(gap(centre(), c)) + 8 * u * length; // bounds.md V4 (rounding, double)
     if (!c.of_disks()) {
         std::copy(size, size + order, bound + 1);
         return;
@@ -99,6 +99,7 @@ void CurvePiece::bound_coefficients_of(std::size_t l) {
         if (k <= order) {
             sum.add(line, d[k]);
         }
+        // arcs.md A8
         bound[k] = (std::abs(sum.value) + (static_cast<double>(k) + 16) * u * sum.absolute) / length * (1 + 8 * u);
     }
 }
@@ -108,7 +109,7 @@ void CurvePiece::bound_coefficients_of(std::size_t l) {
 void CurvePiece::shorten_reach() {
     const std::size_t order = coefficients().size();
     const std::size_t stride = 2 * order + 1;
-    for (int attempt = 0; attempt < 60; ++attempt, reach_ *= 0.85) {
+    for (int attempt = 0; attempt < 60; ++attempt, reach_ *= 0.85) { // cost: shorter pieces tried
         double beyond = 0;
         for (std::size_t l = 0; l < curve().contacts.size(); ++l) {
             const double* c = &residual_[l * stride];
@@ -118,6 +119,7 @@ void CurvePiece::shorten_reach() {
             }
             beyond += value * value;
         }
+        // 4: cost: reach of a piece; 0x1p-8: cost: reach of a shifted piece
         if (beyond <= (this->shift().empty() ? 4 : 0x1p-8) * rounded_) {
             return;
         }
@@ -187,7 +189,7 @@ CurvePiece::Motion CurvePiece::motion(double h) const {
         }
         least.speed += static_cast<double>(k) * power * norm(coefficients()[k - 1]);
     }
-    least.row_rate = (least.row_rate - loss * up) * (1 - 1e-9);
+    least.row_rate = (least.row_rate - loss * up) * (1 - 1e-9); // arcs.md A8
     return least;
 }
 
@@ -197,14 +199,14 @@ bool CurvePiece::prove(double h) {
         return false;
     }
     const double lost = inverse_norm() * (curve().norm_of(stretch(h)) + curve().rest_derivative) * up;
-    if (!(lost <= 0.8)) {
+    if (!(lost <= 0.8)) { // cost: reach of a piece (arcs.md A2)
         return false;
     }
     const double inverse = inverse_norm() / (1 - lost) * up; // at every p(s)
     const Misfit residual = misfit(h);
     const double lipschitz = curve().lipschitz;
     const double product = inverse * inverse * lipschitz * residual.value * up;
-    if (!(product <= 0.25)) {
+    if (!(product <= 0.25)) { // 0.25: arcs.md A1
         return false;
     }
     const double radius = 2 * inverse * residual.value * up;
@@ -214,7 +216,7 @@ bool CurvePiece::prove(double h) {
         return false;
     }
     radius_ = shift_norm_ > 0 ? (radius + shift_norm_) * up : radius;
-    unique_ = lipschitz > 0 ? (1 - 1e-9) / (inverse * lipschitz) : infinity;
+    unique_ = lipschitz > 0 ? (1 - 1e-9) / (inverse * lipschitz) : infinity; // arcs.md A8
     slope_error_ = at_curve * (residual.rate + residual.turn * std::sqrt(curve().spread) * radius) * up;
     margin_ = product > 0 ? 0.25 / product : infinity;
     row_rate_ = along.row_rate;
@@ -232,13 +234,13 @@ std::vector<double> CurvePiece::away(const std::vector<double>& x, double s) con
 /// The s where row . (x - p(s)) = 0, by Newton's method. Any s is allowed, because `locate` bounds its error.
 std::optional<double> CurvePiece::nearest(const std::vector<double>& x) const {
     double s = 0;
-    for (int k = 0; k < 8; ++k) {
+    for (int k = 0; k < 8; ++k) { // guess: passes
         const double change = this->ahead_along_row(x, s);
-        if (!std::isfinite(change) || std::abs(s + change) > 1.5 * proved_) {
+        if (!std::isfinite(change) || std::abs(s + change) > 1.5 * proved_) { // guess: place on the piece
             return std::nullopt;
         }
         s += change;
-        if (std::abs(change) <= 1e-14 * proved_) {
+        if (std::abs(change) <= 1e-14 * proved_) { // guess: place on the piece
             break;
         }
     }
@@ -262,16 +264,19 @@ std::optional<CurvePiece::Place> CurvePiece::locate(const std::vector<double>& x
     double power = 1;
     for (std::size_t k = 0; k < coefficients().size(); ++k) {
         power *= std::abs(*s);
-        terms += static_cast<double>(2 * k + 5) * power * largest(coefficients()[k]);
+        terms += static_cast<double>(2 * k + 5) * power * largest(coefficients()[k]); // arcs.md A8 (2k + 3, k from 1)
     }
+    // 16: arcs.md A8
     const double rounding = std::sqrt(static_cast<double>(structure().size())) * u * (16 * coordinate + terms);
     const double open = uncertainty + shift_norm_; // the tube is around p + a_0
     const double distance = (std::sqrt(square) + rounding) * up + open;
     Place place;
     place.s = *s;
+    // arcs.md A8
     place.slack = (std::abs(this->along_row(off).value) + 4 * this->row_terms() * u * (16 * coordinate + terms) +
                    this->row_norm() * open) /
                   row_rate_ * up;
+    // arcs.md A8
     if (!(std::abs(*s) + place.slack <= proved_ * (1 - 1e-9)) || !(distance + speed_ * place.slack * up < unique_)) {
         return std::nullopt;
     }
@@ -286,6 +291,7 @@ int CurvePiece::direction_along(const CurvePiece& other, double s) const {
         size += static_cast<double>(k + 1) * power * largest(coefficients()[k]);
     }
     const double error =
+        // 4: arcs.md A8; 64: arcs.md A8 (slopes along a row)
         (other.row_norm() * slope_error_ + 64 * u * (sum.absolute + 4 * other.row_terms() * size)) * up;
     return sum.value > error ? 1 : -sum.value > error ? -1 : 0;
 }

@@ -16,15 +16,15 @@ namespace {
 
 using roundoff::infinity;
 /// Share of sigma_min that the change of the derivative over a piece may use. Affects cost only.
-constexpr double share = 0.7;
-constexpr double longest_reach = 0.2; ///< in units of the smallest radius
+constexpr double share = 0.7;         // cost: reach of a piece (arcs.md A2)
+constexpr double longest_reach = 0.2; ///< in units of the smallest radius; choice: longest piece (arcs.md A5)
 
 /// Rounds to the multiples of a power of two for which C2 holds (proofs/cells.md). Any coefficients are allowed, and
 /// the separations of these are exact.
 void put_on_grid(std::vector<double>& a, int dimension) {
     int exponent = 0;
-    std::frexp(largest(a), &exponent); // largest < 2^exponent
-    const double step = std::ldexp(1, exponent - 52 + dimension);
+    std::frexp(largest(a), &exponent);                            // largest < 2^exponent
+    const double step = std::ldexp(1, exponent - 52 + dimension); // cells.md C2
     for (double& x : a) {
         x = step > 0 ? std::nearbyint(x / step) * step : 0.0;
     }
@@ -42,10 +42,10 @@ CurvePolynomial::CurvePolynomial(const KeptCurve& curve, const ArcCentre& centre
             ratio = std::max(ratio, std::abs(gap(centre.packing(), c)) / curve.target[l]);
         }
     }
-    if (!(centre.sigma_min() > 0) || !(ratio < 1e-3)) {
+    if (!(centre.sigma_min() > 0) || !(ratio < 1e-3)) { // arcs.md A2 (test of the gaps)
         return;
     }
-    inverse_ = (1 + 2 * ratio + 8 * u) / centre.sigma_min() * up;
+    inverse_ = (1 + 2 * ratio + 8 * u) / centre.sigma_min() * up; // bounds.md V4 (rounding, double)
     expand();
 }
 
@@ -130,7 +130,7 @@ void CurvePolynomial::expand() {
         }
     }
     choose_reach();
-    const double negligible = 0x1p-60 * centre().min_radius();
+    const double negligible = 0x1p-60 * centre().min_radius(); // guess: coefficients that are left out
     std::vector<double> rhs(n, 0.0);
     for (std::size_t k = 2; k <= max_order; ++k) {
         for (std::size_t l = 0; l < n; ++l) {
@@ -192,7 +192,7 @@ std::optional<Packing> CurvePolynomial::corrected(double s) const {
     const double rounding = 2 * grid_step(at);
     std::vector<double> rhs(curve_->contacts.size());
     double previous = infinity;
-    for (int k = 0; k < 40; ++k) {
+    for (int k = 0; k < 40; ++k) { // guess: Newton steps
         for (std::size_t l = 0; l < rhs.size(); ++l) {
             const Contact& c = curve_->contacts[l];
             const auto i = static_cast<std::size_t>(c.i);
@@ -200,20 +200,21 @@ std::optional<Packing> CurvePolynomial::corrected(double s) const {
         }
         const std::vector<double> y = solved(rhs);
         const double size = largest(y);
+        // guess: when Newton stops
         if (!(size < infinity) || (k > 2 && size > 0.9 * previous && size > 1e-9 * at.min_radius())) {
             return std::nullopt;
         }
         for (std::size_t c = 0; c < y.size(); ++c) {
             at.q[c] += y[c];
         }
-        if (size <= rounding || (k > 2 && size > 0.5 * previous)) {
+        if (size <= rounding || (k > 2 && size > 0.5 * previous)) { // guess: when Newton stops
             break;
         }
         previous = size;
     }
     for (std::size_t c = 0; c < guess.size(); ++c) {
-        if (!(std::abs(at.q[c] - guess[c]) <= 0.2 * std::abs(s))) {
-            return std::nullopt; // perhaps another branch
+        if (!(std::abs(at.q[c] - guess[c]) <= 0.2 * std::abs(s))) { // guess: another branch
+            return std::nullopt;                                    // perhaps another branch
         }
     }
     for (std::size_t l = 0; l < rhs.size(); ++l) {

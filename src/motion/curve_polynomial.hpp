@@ -56,7 +56,7 @@ class CurvePolynomial {
     [[nodiscard]] const std::vector<double>& shift() const { return shift_; }
 
   private:
-    static constexpr std::size_t max_order = 14;
+    static constexpr std::size_t max_order = 14; // cost: order of the polynomial
     [[nodiscard]] double coordinate(std::size_t k, double s) const;
     [[nodiscard]] double rate(std::size_t k, double s) const;
     [[nodiscard]] std::vector<double> solved(std::vector<double> rhs) const;

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <utility>
 
+// guess: all other numbers of this file: of the path follower (arcs.md, status.md 1)
+
 namespace isostat {
 
 namespace {

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <functional>
 
+// guess: all other numbers of this file: of the path follower (arcs.md, status.md 1)
+
 namespace isostat {
 
 namespace {
@@ -18,7 +20,8 @@ namespace {
 constexpr double tangent_accuracy = 1e-7;
 constexpr double turn_tangent_accuracy = 1e-15; ///< at a power turn, located only as well as its tangent
 /// Required accuracy of such a tangent: factors of a nearly singular list may not reach a higher one.
-constexpr double turn_tangent_error = 1e-8;
+constexpr double turn_tangent_error = 1e-8; // arcs.md Jump of the power
+// arcs.md Jump of the power
 constexpr double no_power = 1e-6;             ///< of the largest force of the load: accepted power at a turn
 constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips and the sign of the power need it
 

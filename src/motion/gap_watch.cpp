@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
+// exact: all other numbers of this file: a half
+
 namespace isostat {
 
 namespace {
 
-constexpr int max_depth = 60;
+constexpr int max_depth = 60; // cost: halvings (arcs.md A5)
 
 } // namespace
 
@@ -44,7 +46,7 @@ struct GapWatch::Motion {
     };
     [[nodiscard]] View view(double from, double to) const {
         const double s = 0.5 * (from + to);
-        const double half = std::max(to - s, s - from) * (1 + 4 * u);
+        const double half = std::max(to - s, s - from) * (1 + 4 * u); // arcs.md A8 (rounding of a half width)
         const Course course = at(s, std::max(std::abs(from), std::abs(to)));
         return wall ? view_of_wall(course, half) : view_of_disks(course, half);
     }
@@ -81,8 +83,8 @@ struct GapWatch::Motion {
         course.first *= up;
         course.second *= up;
         terms = (terms + size[0]) * up;
-        course.rounding = (2 * static_cast<double>(a.size()) + 24) * u * (terms + target);
-        course.slope_rounding = (2 * static_cast<double>(a.size()) + 8) * u * course.first;
+        course.rounding = (2 * static_cast<double>(a.size()) + 24) * u * (terms + target);  // arcs.md A8
+        course.slope_rounding = (2 * static_cast<double>(a.size()) + 8) * u * course.first; // 8: arcs.md A8
         return course;
     }
     [[nodiscard]] View view_of_wall(const Course& c, double half) const {
@@ -165,6 +167,7 @@ void GapWatch::begin(const CurvePiece& piece, double from, double to) {
     double order = 1;
     moved_ = 0;
     for (const std::vector<double>& a : piece.coefficients()) { // 3.5: above 2 sqrt 3
+        // arcs.md A5 (above twice the root of three components)
         moved_ += 3.5 * (1 + 0.5 * order * order) * power * largest(a) * up;
         power *= h;
         order += 1;
@@ -178,6 +181,7 @@ bool GapWatch::is_far(const CurvePiece& piece, const Contact& contact) const {
     if (!line) {
         return false;
     }
+    // arcs.md A8 (the 24 of relative positions, and the highest coefficient)
     const double rounding = (2 * static_cast<double>(piece.coefficients().size()) + 26) * u;
     const double open = separation_weight(contact) * (piece.radius() + piece.curve().rest_radius) * up +
                         rounding * (2 * line->length + moved_);

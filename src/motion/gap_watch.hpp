@@ -44,8 +44,8 @@ class GapWatch {
 
     std::map<Contact, GapTrend> last_; ///< candidates that are not `above`
     std::set<Contact> fell_;
-    double margin_ = 1e308;
-    double moved_ = 0; ///< bound of what `Motion::view` takes off a gap for the motion of two grains
+    double margin_ = 1e308; // message: largest margin
+    double moved_ = 0;      ///< bound of what `Motion::view` takes off a gap for the motion of two grains
     double where_ = 0;
 };
 

@@ -27,7 +27,7 @@ inline std::optional<CentreLine> centre_line(const Packing& at, const Contact& c
     }
     CentreLine line{separation(at.layout(), at.q, contact), 0};
     line.length = std::sqrt(dot(at.layout(), line.d, line.d));
-    if (!(line.length > 0x1p-450 && line.length < 0x1p500)) {
+    if (!(line.length > 0x1p-450 && line.length < 0x1p500)) { // precision.md B13
         return std::nullopt;
     }
     return line;

@@ -100,7 +100,7 @@ void KeptCurve::bound_in_cell() {
 /// `heaviest`: sum of the squares of what a block at rest does; `row`: 2-norm of the signs in a row of moving disks.
 void KeptCurve::bound_rest(double heaviest, double row) {
     const double weight = std::sqrt(heaviest) * rest_radius;
-    rest_residual = 1.01 * weight * up;
+    rest_residual = 1.01 * weight * up; // arcs.md A7 (and cells.md C11)
     rest_derivative = std::isfinite(smallest) ? row * weight / smallest * up : 0;
 }
 
@@ -109,7 +109,7 @@ double KeptCurve::norm_of(const std::vector<double>& e) const {
     std::vector<double> x(start->radius.size() + (start->cell.any() ? 1 : 0), 1.0);
     std::vector<double> z(x.size());
     double best = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < 6; ++round) {
+    for (int round = 0; round < 6; ++round) { // cost: positive vectors tried (arcs.md A2)
         std::fill(z.begin(), z.end(), 0.0);
         for (std::size_t l = 0; l < contacts.size(); ++l) {
             if (e[l] == 0) {
@@ -133,6 +133,7 @@ double KeptCurve::norm_of(const std::vector<double>& e) const {
         }
         best = std::min(best, ratio);
         for (std::size_t i = 0; i < x.size(); ++i) {
+            // 1e-3: guess: positive vector; 1e-300: guess: positive vector (arcs.md A2)
             x[i] = z[i] + 1e-3 * most + 1e-300;
         }
     }

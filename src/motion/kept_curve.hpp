@@ -12,7 +12,7 @@ namespace isostat {
 /// The parts of the moving coordinates on which the separation over a kept contact depends: its disks, and the cell as
 /// a block behind them. A change of norm x in a block changes r by at most weight x: 1 for a disk, |m| for the cell.
 struct Blocks {
-    std::array<std::size_t, 3> at{};
+    std::array<std::size_t, 3> at{}; // 3: exact: blocks that a contact touches
     std::array<double, 3> weight{};
     std::size_t count = 0;
 

@@ -173,7 +173,7 @@ void MovingPart::check_rest(double uncertainty) {
         }
     }
     const KeptCurve all(start_.packing, start_.structure.contacts(), slot_, 0.0);
-    const double inverse = 1.003 / start_.inverse.sigma_min;
+    const double inverse = 1.003 / start_.inverse.sigma_min; // precision.md B13
     if (!((std::sqrt(square) + uncertainty) * inverse * all.lipschitz * up < 1)) {
         trouble_ = "grains that do not move are not proved to be at the same place at both ends";
     }
@@ -254,7 +254,7 @@ bool MovingPart::complete(const CurvePiece& piece, double h, const CandidateList
             used += power * drift_along(list, piece.centre(), coefficient);
             power *= h;
         }
-        return used * up < 0.5 * list.reach;
+        return used * up < 0.5 * list.reach; // cells.md C8 (half the reach)
     }
     const std::size_t axes = piece.centre().axes();
     const double unit = 1 / list.reach; // squares then neither under- nor overflow in any unit

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+// guess: all other numbers of this file: of the path follower (arcs.md, status.md 1)
+
 namespace isostat {
 
 namespace {

@@ -9,9 +9,9 @@ namespace isostat {
 
 namespace {
 
-constexpr int max_halvings = 40;
+constexpr int max_halvings = 40; // cost: halvings
 /// Larger shares of a piece with open power are not excused as the start at a limit or the end at a turn.
-constexpr double largest_open_start = 1e-2;
+constexpr double largest_open_start = 1e-2; // 1e-2: choice: largest open share (arcs.md A6)
 constexpr double largest_open_end = 1e-2;
 
 } // namespace
@@ -29,8 +29,8 @@ struct PowerWatch::Power {
 
     /// P lies above this for s in [from, to].
     [[nodiscard]] double low(double from, double to) const {
-        const double s = 0.5 * (from + to);
-        const double half = std::max(to - s, s - from) * (1 + 4 * u);
+        const double s = 0.5 * (from + to);                           // exact: a half
+        const double half = std::max(to - s, s - from) * (1 + 4 * u); // 4: arcs.md A8 (Horner and half width)
         const double h = std::max(std::abs(from), std::abs(to));
         double value = 0;
         for (std::size_t k = c.size(); k-- > 0;) {
@@ -63,8 +63,9 @@ void PowerWatch::walk(const Power& power, double from, double to, int depth) {
     if (power.low(from, to) > 0) {
         return;
     }
-    const double middle = 0.5 * (from + to);
+    const double middle = 0.5 * (from + to); // exact: a half
     if (depth >= max_halvings || !(middle > from && middle < to) ||
+        // cost: halvings
         (depth > 12 && !(power.low(middle, middle) > 0) && !(power.low(to, to) > 0) && !(power.low(from, from) > 0))) {
         if (!open_.empty() && open_.back().second == from) {
             open_.back().second = to;
@@ -89,7 +90,7 @@ PowerWatch::Balance PowerWatch::balance(const CurvePiece& piece) const {
     piece.factorisation().solve_forces(balance.f);
     std::vector<double> residual = force;
     std::vector<double> size(n);
-    std::vector<double> terms(n, 7);
+    std::vector<double> terms(n, 7); // bounds.md V3 (c + 7)
     for (std::size_t mu = 0; mu < n; ++mu) {
         size[mu] = std::abs(force[mu]);
     }
@@ -105,7 +106,7 @@ PowerWatch::Balance PowerWatch::balance(const CurvePiece& piece) const {
     }
     double square = 0;
     for (std::size_t mu = 0; mu < n; ++mu) {
-        const double bound = std::abs(residual[mu]) + 1.001 * terms[mu] * u * size[mu];
+        const double bound = std::abs(residual[mu]) + 1.001 * terms[mu] * u * size[mu]; // bounds.md V3 (residual)
         square += bound * bound;
     }
     balance.residual = std::sqrt(square);
@@ -116,7 +117,7 @@ PowerWatch::Balance PowerWatch::balance(const CurvePiece& piece) const {
 double PowerWatch::add_row(const CurvePiece& piece, double force, Power& power) {
     const auto& a = piece.coefficients();
     const auto count = static_cast<double>(piece.structure().size());
-    const double granted = row_units(piece.centre().dimension) + 8;
+    const double granted = row_units(piece.centre().dimension) + 8; // arcs.md A8 (a row, and its factors)
     double speed = 0;
     double reach_power = 1;
     for (std::size_t k = 1; k <= a.size(); ++k, reach_power *= piece.reach()) {
@@ -149,6 +150,7 @@ void PowerWatch::add_contact(const CurvePiece& piece, std::size_t l, double forc
         const RoundedSum sum = half_square(d, k);
         const double factor = static_cast<double>(k) * weight;
         power.c[k - 1] += factor * sum.value;
+        // arcs.md A8
         power.c_open[k - 1] += (2 * static_cast<double>(k) + 24 + count) * u * std::abs(factor) * sum.absolute;
     }
 }

@@ -13,10 +13,11 @@ namespace {
 
 /// The start of the iteration: before the end found in double, on the curve up to (1e-6)^2.
 Packing a_little_before(const RoughEnd& rough) {
+    // guess: where the iteration begins
     constexpr double back = 1e-6; // of a radius: a hundred times the stretch on which a gap is 0 to rounding
     Packing at = rough.end;
     const double speed = largest(rough.tangent);
-    const double way = std::min(back * at.min_radius(), 0.5 * rough.displacement);
+    const double way = std::min(back * at.min_radius(), 0.5 * rough.displacement); // guess: where the iteration begins
     for (std::size_t k = 0; k < rough.tangent.size() && speed > 0; ++k) {
         at.q[k] -= way / speed * rough.tangent[k];
     }
@@ -47,14 +48,15 @@ std::vector<double> newton_step(const RoughEnd& rough, const Packing& at, const 
 } // namespace
 
 std::optional<Packing> precise_end(const RoughEnd& rough) {
-    constexpr int max_steps = 60;
+    constexpr int max_steps = 60; // cost: then there is no such end
+    // guess: when Newton's method has converged
     constexpr double converged = 1e-22; // of a radius: coordinates are rounded to doubles afterwards
     Packing at = a_little_before(rough);
     std::vector<dd_real> correction(at.q.size(), dd_real(0.0));
     for (int k = 0; k < max_steps; ++k) {
         const std::vector<double> step = newton_step(rough, at, correction);
         const double size = step.empty() ? roundoff::infinity : largest(step);
-        if (!(size <= 0.01 * at.min_radius())) {
+        if (!(size <= 0.01 * at.min_radius())) { // guess: a longer step says that there is no end near
             return std::nullopt;
         }
         rough.structure.dofs().move(correction, step);

@@ -12,11 +12,11 @@ namespace isostat {
 
 using roundoff::u;
 /// Factor for sums over all coordinates, their roots, a few products: relative rounding below 1e-9 (B1).
-inline constexpr double up = 1 + 1e-9;
+inline constexpr double up = 1 + 1e-9; // arcs.md A8
 using roundoff::root2;
 /// Relative error of a product with the exact row of a contact, in units of u: entries, products and their sum.
 constexpr double row_units(int dimension) {
-    return dimension == 2 ? 16 : 22;
+    return dimension == 2 ? 16 : 22; // 16: arcs.md A8 (a row); 22: arcs.md A8 (a row, in space)
 }
 
 template <std::size_t size> inline double dot(const std::array<double, size>& x, const std::array<double, size>& y) {
@@ -55,7 +55,7 @@ template <std::size_t size> inline RoundedSum half_square(std::span<const std::a
     RoundedSum sum;
     if (k % 2 == 0) {
         sum.add(d[k / 2], d[k / 2]);
-        sum.value *= 0.5;
+        sum.value *= 0.5; // 0.5: exact: a half
         sum.absolute *= 0.5;
     }
     for (std::size_t i = k > order ? k - order : 1; 2 * i < k; ++i) {

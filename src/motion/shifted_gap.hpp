@@ -19,7 +19,7 @@ namespace isostat {
 /// \pre separations of both are exact (on their grids)
 inline Enclosure shifted_equation(const Packing& start, const Packing& centre, const Contact& c,
                                   const std::vector<double>& shift) {
-    constexpr double rounding = 0x1p-96; // bound for a few operations, each within 2^-98
+    constexpr double rounding = 0x1p-96; // bound for a few operations, each within 2^-98; arcs.md A8 (double-double)
     if (c.kind == ContactKind::held) {
         const auto k = static_cast<std::size_t>(c.i);
         const dd_real off = dd_real(centre.q[k]) - start.q[k] + (shift.empty() ? 0.0 : shift[k]);
@@ -41,7 +41,7 @@ inline Enclosure shifted_equation(const Packing& start, const Packing& centre, c
         square += component * component;
     }
     const dd_real off = (square - distance * distance) / (2.0 * distance);
-    return {off.x[0], std::abs(off.x[1]) + 8 * rounding * distance.x[0]};
+    return {off.x[0], std::abs(off.x[1]) + 8 * rounding * distance.x[0]}; // arcs.md A8 (double-double)
 }
 
 } // namespace isostat

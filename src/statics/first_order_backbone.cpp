@@ -13,8 +13,9 @@ namespace isostat {
 namespace {
 
 /// Weight of the infinitesimal loads: small against the forces, large against Clp's dual tolerance.
+// guess: a weight of a linear programme, whose answer is proved afterwards
 constexpr double infinitesimal_weight = 1e-5;
-constexpr double tolerance = 1e-9;
+constexpr double tolerance = 1e-9; // guess: a tolerance of Clp, whose answer is proved afterwards
 
 double scale_of(const std::vector<double>& x) {
     const double size = largest(x);
@@ -66,6 +67,7 @@ Result<std::vector<Contact>> first_order_backbone(const Packing& packing, const 
     load_programme(simplex, packing, dofs, load, contacts, rho);
     simplex.setPrimalTolerance(tolerance);
     simplex.setDualTolerance(tolerance);
+    // guess: an option of Clp, whose answer is proved afterwards
     simplex.setPerturbation(100); // no perturbation: the basis is the result
     count_work(Work::linear_programmes);
     simplex.primal();

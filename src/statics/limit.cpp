@@ -153,6 +153,7 @@ Result<std::optional<std::size_t>> LimitContest::stand(std::size_t best) {
     limit_.stress = sigma_ + direction_ * (statics_.force(first, sigma_).value / std::abs(slope.value));
     const Enclosure there = statics_.force(first, limit_.stress);
     limit_.stress_error =
+        // precision.md B9
         slope.decided() ? (std::abs(there.value) + there.radius) / (std::abs(slope.value) - slope.radius) * (1 + 8 * u)
                         : infinity;
     limit_.margin = rate.margin;
@@ -178,7 +179,7 @@ void LimitContest::add_to_class(ContactId l) {
 
 Enclosure LimitContest::at_limit(ContactId l) const {
     Enclosure f = statics_.force(l, limit_.stress);
-    f.radius += std::abs(statics_.slope(l).value) * limit_.stress_error * (1 + 8 * u) +
+    f.radius += std::abs(statics_.slope(l).value) * limit_.stress_error * (1 + 8 * u) + // precision.md B9
                 statics_.slope(l).radius * limit_.stress_error;
     return f;
 }

@@ -14,6 +14,7 @@ using roundoff::u;
 
 Enclosure product(const Enclosure& a, const Enclosure& b) {
     const double value = a.value * b.value;
+    // precision.md B9
     return {value, (std::abs(a.value) * b.radius + a.radius * std::abs(b.value) + a.radius * b.radius) * (1 + 8 * u) +
                        2 * u * std::abs(value)};
 }
@@ -38,7 +39,7 @@ std::vector<Enclosure> PerturbedStatics::terms(double sigma, double sigma_error)
         f0[l] = statics_->force(id, sigma);
         if (sigma_error > 0 && zero[l] == 0) {
             const Enclosure slope = statics_->slope(id);
-            f0[l].radius += sigma_error * (std::abs(slope.value) + slope.radius) * (1 + 8 * u);
+            f0[l].radius += sigma_error * (std::abs(slope.value) + slope.radius) * (1 + 8 * u); // precision.md B9
         }
     }
     Load load = load_;
@@ -78,6 +79,7 @@ Enclosure PerturbedStatics::limit_rate(ContactId contact, double sigma, double s
         return {0, std::numeric_limits<double>::infinity()};
     }
     const double value = -f.value / b.value;
+    // precision.md B9
     return {value, (f.radius + std::abs(value) * b.radius) / smallest * (1 + 16 * u) + 4 * u * std::abs(value)};
 }
 

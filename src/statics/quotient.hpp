@@ -18,6 +18,7 @@ inline Enclosure quotient(const Enclosure& a, const Enclosure& b) {
     if (!(smallest > 0)) {
         return {value, roundoff::infinity};
     }
+    // precision.md B9
     return {value, (a.radius + std::abs(value) * b.radius) / smallest * (1 + 8 * u) + 2 * u * std::abs(value)};
 }
 

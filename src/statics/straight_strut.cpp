@@ -153,6 +153,7 @@ Vector push(const Statics& statics, std::size_t contact, std::size_t disk) {
 /// Bound of the distance of normals at the turn from the stored ones, with the rounding of sums over all contacts (S4).
 double doubt_of(const Statics& statics) {
     using roundoff::u;
+    // stability.md S4 (rounding)
     return 2 * statics.normal_uncertainty() + (static_cast<double>(statics.structure().size()) + 512) * u;
 }
 
@@ -225,8 +226,8 @@ struct Bare {
         const Vector m = push(statics, b, disk);
         const double cross = n[0] * m[1] - n[1] * m[0];
         // Far more than the error of the place of the turn; the normals of a strut fail by many orders.
-        constexpr double well_apart = 0x1p-16;
-        if (!(std::abs(cross) > well_apart + 8 * statics.normal_uncertainty())) {
+        constexpr double well_apart = 0x1p-16;                                    // stability.md S4 (c)
+        if (!(std::abs(cross) > well_apart + 8 * statics.normal_uncertainty())) { // stability.md S4 (rounding)
             return false;
         }
         const Vector& g = load[disk];
@@ -320,7 +321,7 @@ Enclosure excess_over(const Statics& statics, std::size_t a, std::size_t b, cons
     double value = 0;
     double bend = 0;
     for (std::size_t k = 0; k < plane; ++k) {
-        value -= 0.5 * load[k] * (from_a[k] - from_b[k]);
+        value -= 0.5 * load[k] * (from_a[k] - from_b[k]); // stability.md S4 (mean of two normals)
         bend += std::abs(from_a[k] + from_b[k]);
     }
     // The normal of the straight strut lies between the two stored ones; each is known to `normal_uncertainty`.

@@ -28,7 +28,7 @@ template <class T> class ArithmeticOfDoubles {
   public:
     using Bound = double;
     static double about(const T& x) { return std::abs(Arithmetic<T>::rounded(x)); }
-    static double size(const T& x) { return about(x) * (1 + 2 * 0x1p-53); }
+    static double size(const T& x) { return about(x) * (1 + 2 * 0x1p-53); } // exact: u, the unit of rounding
     static T number(double x, long = 0) { return T(x); }
     static long exponent_of(const std::vector<T>&) { return 0; }
     static double scaled(const T& x, long) { return Arithmetic<T>::rounded(x); }
@@ -39,7 +39,7 @@ template <> class Arithmetic<double> : public ArithmeticOfDoubles<double> {
     static constexpr Rung rung = Rung::double_bound;
     static constexpr int corrections = 0; // the vertex is enclosed around the stored doubles themselves
     static constexpr int refinements = 2;
-    static double unit() { return 0x1p-53; }
+    static double unit() { return 0x1p-53; } // exact: u, the unit of rounding
     static double difference(double a, double b) { return a - b; }
     static double product(double a, double b, double c = 1) { return a * b * c; }
     static double rounded(double x) { return x; }
@@ -50,9 +50,9 @@ template <> class Arithmetic<double> : public ArithmeticOfDoubles<double> {
 template <> class Arithmetic<dd_real> : public ArithmeticOfDoubles<dd_real> {
   public:
     static constexpr Rung rung = Rung::double_double;
-    static constexpr int corrections = 8;
+    static constexpr int corrections = 8; // 8: cost: passes
     static constexpr int refinements = 8;
-    static double unit() { return 0x1p-98; }
+    static double unit() { return 0x1p-98; } // true_vertex.md V5 (e of double-double)
     static dd_real difference(double a, double b) { return dd_real::sub(a, b); }
     static dd_real product(double a, double b, double c = 1) { return dd_real::mul(a, b) * c; }
     static double rounded(const dd_real& x) { return x.x[0]; }

@@ -13,6 +13,8 @@
 #include <new>
 #include <numeric>
 
+// exact: all other numbers of this file: index in a block
+
 namespace isostat {
 
 namespace {
@@ -65,6 +67,7 @@ std::vector<int> little_fill(const sparse::Matrix<double>& h, std::size_t blocks
 } // namespace
 
 void BlockCholesky::set(const sparse::Matrix<double>& h, FillOrder& order) {
+    // cost: when the order is renewed
     constexpr double outgrown = 1.2; // new contacts join parts that the order keeps apart, so the work grows
     h_ = &h;
     blocks_ = (static_cast<std::size_t>(h.rows) + 1) / 2;
@@ -114,6 +117,7 @@ void BlockCholesky::arrange(const std::vector<int>& order) {
         }
         for (std::size_t k = 0; k < count; ++k) {
             const std::array<double, 2>& v = parts[k].value;
+            // exact: size of a block
             std::array<double, 4>& d = diagonal_[static_cast<std::size_t>(parts[k].place)].value;
             d[0] += v[0] * v[0];
             d[1] += v[1] * v[0];
@@ -167,7 +171,7 @@ void BlockCholesky::analyse() {
         across_start_[i] = static_cast<int>(entries);
         columns[i].seen = row;
         if (column_.size() < entries + blocks_) {
-            column_.resize(2 * entries + 8 * blocks_);
+            column_.resize(2 * entries + 8 * blocks_); // cost: memory
         }
         int* const found = column_.data();
         for (int p = row_start_[i]; p < row_start_[i + 1]; ++p) {
@@ -234,7 +238,7 @@ inline std::size_t BlockCholesky::load_column(const Arrays& at, std::size_t j, d
     at.work[0].value[3] -= shift;
     for (int p = column_start_[j]; p < column_start_[j + 1]; ++p) {
         const Pair& pair = pairs_[static_cast<std::size_t>(by_column_[static_cast<std::size_t>(p)])];
-        std::array<double, 4>& w = at.work[at.place[pair.row.place]].value;
+        std::array<double, 4>& w = at.work[at.place[pair.row.place]].value; // exact: size of a block
         const std::array<double, 2>& own = pair.column.value;
         const std::array<double, 2>& other = pair.row.value;
         w[0] += other[0] * own[0];
@@ -308,7 +312,7 @@ bool BlockCholesky::factorise(double shift) {
         const std::size_t count = load_column(at, j, shift);
         subtract_columns(at, static_cast<std::size_t>(across_start_[j]),
                          static_cast<std::size_t>(across_start_[j + 1]));
-        const std::array<double, 4>& diagonal = at.work[0].value;
+        const std::array<double, 4>& diagonal = at.work[0].value; // 4: exact: size of a block
         const double d0 = diagonal[0];
         if (!(d0 > 0)) {
             return false;
@@ -349,12 +353,13 @@ double BlockCholesky::error_bound(double shift) const {
     for (std::size_t i = 0; i < n; ++i) {
         const auto block = static_cast<std::size_t>(position_[i] / 2);
         const int row_of_l = 2 * (across_start_[block + 1] - across_start_[block] + 1); // with the zeros in blocks
-        relative[i] = gamma(entries[i] + row_of_l + 4.0);
+        relative[i] = gamma(entries[i] + row_of_l + 4.0);                               // bounds.md V1 (t_k)
         trace += relative[i] * (2 * diagonal[i] + shift);
     }
-    constexpr double good_enough = 0.01; // of the shift
-    constexpr double of_use = 0.5;       // of the shift: above it the caller may give up
-    constexpr int most_passes = 5;
+    constexpr double good_enough = 0.01; // of the shift; cost: when the row bound is taken (bounds.md V1)
+    // cost: when the row bound is refined (bounds.md V1)
+    constexpr double of_use = 0.5; // of the shift: above it the caller may give up
+    constexpr int most_passes = 5; // cost: passes
     double sum = trace;
     std::vector<double> x(n);
     std::transform(relative.begin(), relative.end(), x.begin(), [](double g) { return 1 / std::sqrt(g); });
@@ -365,6 +370,7 @@ double BlockCholesky::error_bound(double shift) const {
             break;
         }
     }
+    // bounds.md V1
     return sum * 1.01 + 1e-290; // 1.01: second order in gamma and the rounding of this sum; 1e-290: underflow
 }
 
@@ -398,7 +404,7 @@ double BlockCholesky::largest_ratio(const std::vector<double>& relative, double 
         double first = l00 * own[0] + std::abs(l10) * own[1]; // sums of the two columns
         double second = l11 * own[1];
         for (auto k = static_cast<std::size_t>(start_[j]); k < static_cast<std::size_t>(start_[j + 1]); ++k) {
-            const std::array<double, 4>& l = value_[k].value;
+            const std::array<double, 4>& l = value_[k].value; // 4: exact: size of a block
             const std::array<double, 2>& w = weight[static_cast<std::size_t>(row_[k])];
             first += std::abs(l[0]) * w[0] + std::abs(l[1]) * w[1];
             second += std::abs(l[2]) * w[0] + std::abs(l[3]) * w[1];
@@ -426,6 +432,7 @@ double BlockCholesky::largest_ratio(const std::vector<double>& relative, double 
         largest_x = std::max(largest_x, image);
     }
     for (double& c : x) {
+        // bounds.md V1
         c = std::max(c / largest_x, 1e-9); // any x > 0 gives a bound; the ratios must not over- or underflow
     }
     return largest;

@@ -29,8 +29,8 @@ class BlockCholesky {
 
   private:
     /// Stored by columns: element 2 c + r is (row r, column c) of the block.
-    struct alignas(32) Block {
-        std::array<double, 4> value{};
+    struct alignas(32) Block {         // exact: alignment
+        std::array<double, 4> value{}; // exact: size of a block
     };
     /// The entries of a contact in one block.
     struct Part {
@@ -60,6 +60,7 @@ class BlockCholesky {
     std::vector<int> across_start_;             ///< by row of L:
     std::vector<int> column_, across_;          ///< columns of its entries, and their places in `row_`
     std::vector<Block> value_, work_;
+    // exact: index in a block
     std::vector<std::array<double, 3>> pivot_; ///< diagonal blocks of L: (0, 0), (1, 0), (1, 1)
     std::vector<int> place_, next_, next_row_;
 };

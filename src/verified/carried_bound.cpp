@@ -12,13 +12,13 @@ namespace isostat {
 namespace {
 
 using roundoff::u;
-constexpr double slack = 1 + 1e-9; ///< rounding of the norms and of the last operations
+constexpr double slack = 1 + 1e-9; ///< rounding of the norms and of the last operations; exchange.md V8
 
 /// Upper bound of |G_-' - G_-|_2 over the kept rows of the exact matrices: |B|_2^2 <= max (B^T B 1)_j for B =
 /// |difference| entry by entry; the entries of both matrices err by 5u, in space 5.51u. Empty when the patterns differ.
 std::optional<double> change_of_kept(const sparse::Matrix<double>& before, const sparse::Matrix<double>& after,
                                      int slot, int dimension) {
-    const double of_entries = (dimension == plane ? 11 : 12) * u;
+    const double of_entries = (dimension == plane ? 11 : 12) * u; // 11: exchange.md V8 (11u); 12: exchange.md V8 (12u)
     std::vector<double> difference(after.row.size(), 0.0);
     std::vector<double> row_sum(static_cast<std::size_t>(after.rows), 0.0);
     for (int j = 0; j < after.cols; ++j) {
@@ -64,6 +64,7 @@ double residual_of_mechanism(const sparse::Matrix<double>& h, int slot, const st
             size += std::abs(term);
         }
         r[j] = static_cast<int>(j) == slot ? 0.0 : dot;
+        // exchange.md V8 (c + 8)
         const double terms = h.start[j + 1] - h.start[j] + 8; // 5u of the entries, the products, the additions
         const double bound = static_cast<int>(j) == slot ? 0.0 : std::abs(dot) + terms * u * size;
         square += bound * bound;
@@ -71,8 +72,9 @@ double residual_of_mechanism(const sparse::Matrix<double>& h, int slot, const st
     return std::sqrt(square) * slack;
 }
 
+// cost: when the guess is good enough (exchange.md V8)
 constexpr double good_enough = 0.02; // a relative loss of the bound
-constexpr int max_passes = 4;
+constexpr int max_passes = 4;        // cost: passes
 
 /// Refines a guess, of length about 1, of the motion v with G_- v = 0. Returns an upper bound of its distance from
 /// the line of the true motion, which is at most |G_- v| / kept.
@@ -116,7 +118,7 @@ double balancing_forces(const sparse::Matrix<double>& h, const std::vector<doubl
 double residual_of_forces(const sparse::Matrix<double>& h, const std::vector<double>& v, const std::vector<double>& z,
                           std::vector<double>& r, std::vector<double>& size, std::vector<int>& terms) {
     r = v;
-    std::fill(terms.begin(), terms.end(), 8);
+    std::fill(terms.begin(), terms.end(), 8); // exchange.md V8 (c + 8)
     for (std::size_t i = 0; i < size.size(); ++i) {
         size[i] = std::abs(v[i]);
     }
@@ -131,6 +133,7 @@ double residual_of_forces(const sparse::Matrix<double>& h, const std::vector<dou
     }
     double square = 0;
     for (std::size_t i = 0; i < r.size(); ++i) {
+        // bounds.md V3
         size[i] = std::abs(r[i]) + terms[i] * (1.001 * u * size[i] + underflow_unit); // a product may underflow
         square += size[i] * size[i];
     }
@@ -149,6 +152,7 @@ std::optional<ProvedExchange> carry_bound(const IsostaticStructure& before, cons
     if (!change || !(bound.sigma_min - *change > worth * started_with)) {
         return std::nullopt;
     }
+    // 4: exchange.md V8 (last operations)
     const double kept = (bound.sigma_min - *change) * (1 - 4 * u); // of G_-, N - 1 rows
     const double size_of_guess = euclidean_norm(mechanism);
     for (double& c : mechanism) {
@@ -156,14 +160,15 @@ std::optional<ProvedExchange> carry_bound(const IsostaticStructure& before, cons
     }
     const double off = refine_mechanism(h, after.slot(), inverse, kept, mechanism);
     const double length = euclidean_norm(mechanism);
-    if (!(off < 0.1 * length)) {
+    if (!(off < 0.1 * length)) { // cost: then given up
         return std::nullopt;
     }
+    // exchange.md V8
     const double along = std::sqrt(length * length - off * off) * (1 - 1e-9); // component on the null vector
     std::vector<double> z;
     const double open = balancing_forces(h, mechanism, inverse, z);
     const double lost = (off + open) / along * slack;
-    if (!(lost < 0.5)) {
+    if (!(lost < 0.5)) { // cost: then given up
         return std::nullopt;
     }
     const double inverse_norm = std::hypot(1 / kept, euclidean_norm(z) * slack / along) / (1 - lost) * slack;

@@ -21,6 +21,8 @@ Centre::Centre(Packing p, IsostaticStructure s, Factorisation factors, const Inv
     for (const Contact& contact : structure.contacts()) {
         const double h = std::abs(gap(packing, contact));
         const double length = target(packing, contact);
+        // 8: bounds.md V4 (a), rounding of K, and of a gap; 4: bounds.md V4 (b), three roundings, and two of the
+        // largest gap
         largest_gap = std::max(largest_gap, (h + 8 * u * (h + length)) * (1 + 4 * u));
         relative_gap = std::max(relative_gap, h / length);
     }
@@ -45,10 +47,13 @@ std::unique_ptr<Centre> Centre::of(const ProvedStructure& proved) {
 }
 
 Result<std::unique_ptr<Centre>> Centre::moved(Packing there, double farthest) const {
+    // true_vertex.md V5 (roundings of a distance)
     const double distance = std::sqrt(static_cast<double>(there.q.size())) * farthest * (1 + 4 * u);
     InverseBound bound = inverse;
+    // bounds.md V4 (b), three roundings, and two of the largest gap
     bound.sigma_min -= normal_rate(neighbourhood.lipschitz) * distance * (1 + 4 * u);
     bound.sigma_min *= 1 - 2 * u;
+    // true_vertex.md V5 (a centre that was moved)
     const bool near = relative_gap < 1e-3 && distance * neighbourhood.lipschitz < 1e-3; // then distance < D_min / 1000
     const ContactId any(0);                                                             // nothing is exchanged
     auto same = near && bound.sigma_min > inverse.sigma_min / 2

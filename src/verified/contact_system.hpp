@@ -29,6 +29,7 @@ template <class T> class ContactSystem {
                   const Factorisation& factorisation)
         : arithmetic_(vertex.at().arithmetic()), packing_(vertex.at().packing()), structure_(structure),
           factorisation_(factorisation), matrix_(vertex.at().contact_matrix(structure, Place::Divided::by_lengths)),
+          // true_vertex.md V6 (last operations)
           radius_(vertex.radius()), uncertainty_(vertex.lipschitz() * vertex.radius() * (1 + 4 * u)),
           sigma_(vertex.sigma()) {}
     /// |H* - H| <= uncertainty, H the unit normals at `place`; `sigma` > 0 a lower bound of the smallest singular value
@@ -84,7 +85,7 @@ auto ContactSystem<T>::residual(const std::vector<T>& load, const std::vector<T>
     const std::size_t n = load.size();
     Residual result{load};
     std::vector<Bound> size(n);
-    std::vector<int> terms(n, 8); // 5 of the entry, 1 of the product, 2 of the load
+    std::vector<int> terms(n, 8); // 5 of the entry, 1 of the product, 2 of the load; true_vertex.md V6 (c + 8)
     for (std::size_t i = 0; i < n; ++i) {
         size[i] = a.about(load[i]);
     }
@@ -102,7 +103,7 @@ auto ContactSystem<T>::residual(const std::vector<T>& load, const std::vector<T>
     }
     std::vector<Bound> unknown(n); // bound of the error of the residual, row by row
     for (std::size_t i = 0; i < n; ++i) {
-        unknown[i] = a.size(result.value[i]) + 1.02 * a.unit() * terms[i] * size[i];
+        unknown[i] = a.size(result.value[i]) + 1.02 * a.unit() * terms[i] * size[i]; // true_vertex.md V6 (rounding)
         result.largest = std::max(result.largest, std::abs(a.rounded(result.value[i])));
     }
     result.norm = norm_of_bounds(unknown);
@@ -114,6 +115,7 @@ template <class T> auto ContactSystem<T>::turned(const std::vector<T>& x, bool t
     if (transposed || radius_ <= 0) { // |H* - A| |x|
         std::vector<Bound> size(x.size());
         std::transform(x.begin(), x.end(), size.begin(), [&](const T& c) { return a.size(c); });
+        // true_vertex.md V6 (last operations)
         return uncertainty_ <= 0 ? Bound(0) : uncertainty_ * norm_of_bounds(size) * (1 + 4 * u);
     }
     if (packing_.cell.any()) {
@@ -147,8 +149,9 @@ BoundedVector<T> ContactSystem<T>::refine(const std::vector<T>& load, const Boun
     std::vector<double> step(x.size());
     for (int iteration = 0; iteration <= a.refinements + 1; ++iteration) {
         const Residual r = residual(load, x, transposed);
+        // true_vertex.md V6 (c + 8)
         const Bound bound = (r.norm + load_error + turned(x, transposed)) / sigma_ * (1 + 8 * u);
-        const bool enough = !(bound < 0.5 * best.bound);
+        const bool enough = !(bound < 0.5 * best.bound); // cost: lost below 1/2, and when iterations stop
         if (bound < best.bound) {
             best = {x, bound, r.largest};
         }

@@ -11,7 +11,7 @@ using roundoff::u;
 class DoubleRung final : public IntervalRung {
   public:
     DoubleRung(LadderProblem& problem, double accuracy)
-        : IntervalRung(problem, Rung::double_bound, 53, accuracy > 0), accuracy_(accuracy) {}
+        : IntervalRung(problem, Rung::double_bound, 53, accuracy > 0), accuracy_(accuracy) {} // exact: bits of a double
 
     double normal_uncertainty() override { return this->problem_.stored_distance().uncertainty; }
 

@@ -18,8 +18,10 @@ struct Neighbourhood {
     static Neighbourhood of(const Packing& packing, const std::vector<Contact>& contacts, const InverseBound& inverse) {
         using roundoff::u;
         const double relative_gap = worst_gap_ratio(packing, contacts);
+        // true_vertex.md V5 (test of the gaps)
         const bool known = inverse.verdict == Verdict::proved && relative_gap < 1e-3; // false for a NaN
         return {isostat::lipschitz(packing, contacts),
+                // 16: bounds.md V4 (b), 8u granted there; 4: bounds.md V4 (b), three roundings
                 known ? (1 + 2 * relative_gap + 16 * u) / inverse.sigma_min * (1 + 4 * u)
                       : std::numeric_limits<double>::infinity()};
     }
@@ -53,6 +55,7 @@ template <class T> class EnclosedVertex {
     /// Lower bound of the smallest singular value of the contact matrix at the true vertex.
     [[nodiscard]] double sigma() const { return sigma_; }
     /// Bound of |q* - q|.
+    // true_vertex.md V5 (rounding of bounds)
     [[nodiscard]] Bound distance() const { return (shift_ + radius_) * (1 + 4 * u); }
 
   private:
@@ -65,6 +68,7 @@ template <class T> class EnclosedVertex {
         f.clear();
         for (const Contact& contact : contacts) {
             f.push_back(at_.gap_function(contact));
+            // true_vertex.md V5 (8e D)
             bound.push_back(a.size(f.back()) + 8 * a.unit() * target(at_.packing(), contact));
         }
         return norm_of_bounds(bound);
@@ -91,7 +95,9 @@ template <class T> bool EnclosedVertex<T>::accept(const Bound& residual) {
     }
     const Bound largest = *std::max_element(moved.begin(), moved.end());
     const Bound shift = norm_of_bounds(moved);
+    // 4: true_vertex.md V5 (rounding of bounds)
     const double lost = above(at_q_.inverse_norm * k * shift * (1 + 4 * u));
+    // 0x1p-10: true_vertex.md V5 (size of p); 0.5: cost: lost below 1/2, and when iterations stop
     lost_ = !(largest <= 0x1p-10 * at_.packing().min_radius() && lost < 0.5);
     if (lost_) {
         return false;
@@ -99,8 +105,9 @@ template <class T> bool EnclosedVertex<T>::accept(const Bound& residual) {
     const double beta = at_q_.inverse_norm / (1 - lost) * (1 + 4 * u);
     const Bound eta = beta * residual * (1 + 2 * u);
     const Bound product = beta * k * eta * (1 + 4 * u);
-    const Bound radius = 1.18 * eta; // (1 - sqrt(1 - 2h)) / h <= 1.172 for h <= 1/4
-    if (!(product <= 0.25 && radius < 0.5 * radius_)) {
+    // true_vertex.md V5 (by bounds.md T9)
+    const Bound radius = 1.18 * eta;                    // (1 - sqrt(1 - 2h)) / h <= 1.172 for h <= 1/4
+    if (!(product <= 0.25 && radius < 0.5 * radius_)) { // true_vertex.md V5 (h <= 1/4)
         return false;
     }
     exists_ = true;
@@ -134,7 +141,7 @@ void EnclosedVertex<T>::enclose(const IsostaticStructure& structure, const Facto
     }
     if (exists_) {
         at_.correct(std::move(accepted));
-        sigma_ = (1 / derivative_ - above(at_q_.lipschitz * radius_)) * (1 - 8 * u);
+        sigma_ = (1 / derivative_ - above(at_q_.lipschitz * radius_)) * (1 - 8 * u); // true_vertex.md V5 (8e D)
     }
 }
 

@@ -21,7 +21,7 @@ namespace isostat {
 namespace {
 
 using roundoff::infinity;
-constexpr mpfr_prec_t shown_bits = 160; ///< of the doubles that are shown for exact numbers
+constexpr mpfr_prec_t shown_bits = 160; ///< of the doubles that are shown for exact numbers; exact: bits of comparisons
 
 /// value = mantissa 2^exponent, mantissa odd or 0.
 struct Dyadic {
@@ -140,7 +140,7 @@ std::vector<mpq_class> ExactForces::solve(const std::vector<double>& force,
 
 /// Rational times the root of an integer, to `bits` bits (a few units of rounding).
 Real root_product(const mpq_class& factor, const mpz_class& square, mpfr_prec_t bits) {
-    Real root(bits + 8);
+    Real root(bits + 8); // 8: precision.md B7
     mpfr_set_z(root.get(), square.get_mpz_t(), MPFR_RNDN);
     mpfr_sqrt(root.get(), root.get(), MPFR_RNDN);
     Real result(bits + 8);
@@ -175,6 +175,7 @@ class ExactRung final : public ForceRung {
     }
     PreciseInterval zero_of(const ForceExpression& force, int bits) override {
         const mpq_class zero = -value_of(force).factor / unknown(force.slope_part, force.contact);
+        // 160: exact: bits of comparisons; 32: exact: more bits than the numbers
         PreciseInterval result(std::max(bits + 32, 160));
         mpfr_set_q(result.low.get(), zero.get_mpq_t(), MPFR_RNDD);
         mpfr_set_q(result.high.get(), zero.get_mpq_t(), MPFR_RNDU);
@@ -229,7 +230,7 @@ void ExactRung::solve(RightHandSide& part) {
     const std::size_t n = part.force.size();
     part.unknown = forces_.solve(part.force, part.terms.products);
     std::vector<Real> x;
-    Real error(64);
+    Real error(64); // 64: exact: bits of a bound
     Real size(64);
     for (std::size_t l = 0; l < n; ++l) {
         x.push_back(root_product(part.unknown[l], forces_.square(ContactId(l)), shown_bits));

@@ -17,9 +17,9 @@ template <> struct Eigen::NumTraits<dd_real> : Eigen::GenericNumTraits<dd_real> 
         IsSigned = 1,
         RequireInitialization = 1,
         ReadCost = 2,
-        AddCost = 20,
-        MulCost = 30
-    }; // NOLINTEND(readability-identifier-naming)
+        AddCost = 20, // exact: cost that Eigen is told
+        MulCost = 30  // exact: cost that Eigen is told
+    };                // NOLINTEND(readability-identifier-naming)
 };
 
 namespace isostat {
@@ -27,9 +27,9 @@ namespace isostat {
 double shifted_cholesky_double_double(const sparse::Matrix<double>& h, double shift) {
     using Sparse = Eigen::SparseMatrix<dd_real>;
     std::vector<Eigen::Triplet<dd_real>> entries;
-    entries.reserve(10 * static_cast<std::size_t>(h.cols));
+    entries.reserve(10 * static_cast<std::size_t>(h.cols)); // cost: memory reserved
     std::vector<double> diagonal(static_cast<std::size_t>(h.rows), 0.0);
-    std::vector<double> terms(static_cast<std::size_t>(h.rows), 4.0);
+    std::vector<double> terms(static_cast<std::size_t>(h.rows), 4.0); // bounds.md V1 (t_k)
     for (std::size_t j = 0; j < static_cast<std::size_t>(h.cols); ++j) {
         for (int a = h.start[j]; a < h.start[j + 1]; ++a) {
             const auto s = static_cast<std::size_t>(a);
@@ -66,10 +66,10 @@ double shifted_cholesky_double_double(const sparse::Matrix<double>& h, double sh
     for (std::size_t i = 0; i < terms.size(); ++i) {
         const auto row = static_cast<std::size_t>(cholesky.permutationPinv().indices()[static_cast<Eigen::Index>(i)]);
         const double m = terms[row] + in_factor[i];
-        sum += m * 0x1p-96 * (2 * diagonal[row] + shift);
+        sum += m * 0x1p-96 * (2 * diagonal[row] + shift); // bounds.md V1 (second rung)
     }
-    const double bound = shift - sum * 1.01 - 1e-290;
-    return bound > 0 ? bound * (1 - 0x1p-50) : 0;
+    const double bound = shift - sum * 1.01 - 1e-290; // bounds.md V1
+    return bound > 0 ? bound * (1 - 0x1p-50) : 0;     // bounds.md V1 (last operations)
 }
 
 } // namespace isostat

@@ -20,7 +20,7 @@ namespace {
 
 using roundoff::root2;
 using roundoff::u;
-constexpr double raise = 1 + 1e-10; ///< rounding of sums and products of a few bounds
+constexpr double raise = 1 + 1e-10; ///< rounding of sums and products of a few bounds; precision.md B1
 
 double length_of(const std::vector<double>& x) {
     std::vector<double> size(x.size());
@@ -32,6 +32,7 @@ double length_of(const std::vector<double>& x) {
 /// per entry; and one for three periods.
 double rounding(int dimension, const Contact& contact) {
     const bool here = contact.image.is_here();
+    // 12: precision.md B8 (a); 16: precision.md B8 (f); 14: precision.md B8 (a); 22: precision.md B8 (f)
     return (dimension == plane ? (here ? 12 : 16) : (here ? 14 : 22)) * u;
 }
 
@@ -44,7 +45,7 @@ double lost_to_periods(const Layout& layout, const std::vector<double>& v, const
             size += std::abs(multiple * v[k]);
         });
     }
-    return 16 * u * size;
+    return 16 * u * size; // precision.md B8 (f)
 }
 
 /// The grains of a contact, disks first, then walls.
@@ -62,7 +63,7 @@ std::array<std::size_t, 2> grains_of(const Contact& c, std::size_t disks) {
 }
 
 /// Shares of a force and differences of motions below this count as zero: a guess, since the list is counted exactly.
-constexpr double carries_or_moves = 1e-8;
+constexpr double carries_or_moves = 1e-8; // guess: which contacts carry the force of a pair
 
 /// The coefficients a with row of the pair = sum a_l (row of l), in double.
 std::vector<double> shares_of(const Packing& packing, const IsostaticStructure& structure,
@@ -213,7 +214,7 @@ FirstOrder::FirstOrder(const Packing& packing, const IsostaticStructure& structu
     assert(rho.size() == packing.radius.size());
     away_ = enclosure.distance() * raise;
     uncertainty_ = normal_rate(packing, structure.contacts()) * away_ * raise;
-    sigma_ = (inverse.sigma_min - uncertainty_) * (1 - 4 * u);
+    sigma_ = (inverse.sigma_min - uncertainty_) * (1 - 4 * u); // precision.md B8 (e), last operations
     std::vector<double> approach;
     std::vector<double> rounding;
     for (const Contact& c : structure.contacts()) {
@@ -268,7 +269,7 @@ Enclosure FirstOrder::gap_rate(const Contact& contact, const Velocity& velocity)
         }
         // |n - n*| <= 2 |x - x*| / d for the relative positions x
         turned = (std::sqrt(square) + lost_to_periods(packing_->layout(), velocity.v, contact)) * 2 * weight * away_ /
-                 (0.99 * target(*packing_, contact));
+                 (0.99 * target(*packing_, contact)); // precision.md B8 (b)
     }
     return {rate.value,
             (weight * velocity.error + turned + rounding(packing_->dimension, contact) * rate.terms) * raise};
@@ -339,6 +340,7 @@ FirstOrder::LoadChange FirstOrder::load_change(const std::vector<Enclosure>& f0,
         const double lost = lost_to_periods(packing_->layout(), v, c);
         speed += lost;
         const double place = weight * away_ / d;
+        // precision.md B8 (c)
         const double off = (weight * change_.error + lost + speed * (6 * place + 40 * u)) / d * 1.01;
         Separation(c, packing_->layout()).for_each_coordinate([&](std::size_t k, std::size_t e, int sign) {
             const double turn = (r[e] - x[e] * dot / square) / d;
@@ -369,6 +371,7 @@ void FirstOrder::add_stress_change(std::size_t axis, double stress, double stres
             continue;
         }
         const double rate = change_.v[packing_->length_at(b)];
+        // exact: the third of the axes 0, 1, 2
         const double across = in_plane ? 1 : packing_->q[packing_->length_at(3 - axis - b)];
         const double away = in_plane ? 0 : away_;
         sum += rate * across;
@@ -377,6 +380,7 @@ void FirstOrder::add_stress_change(std::size_t axis, double stress, double stres
     }
     const std::size_t wall = packing_->length_at(axis);
     on.value[wall] -= stress * sum;
+    // precision.md B8 (e), last operations
     on.error[wall] += std::abs(stress) * (open + 4 * u * size) + stress_error * (size + open);
 }
 

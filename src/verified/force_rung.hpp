@@ -64,6 +64,7 @@ std::unique_ptr<ForceRung> multiprecision_rung(LadderProblem& problem, int bits,
 /// regular. `last`: the previous rung, which bounds the distance of the normals from those of the true vertex.
 std::unique_ptr<ForceRung> exact_rung(LadderProblem& problem, ForceRung& last);
 
+// exact: bits of comparisons
 constexpr mpfr_prec_t low_bits = 160; ///< for comparisons on the rungs double and double-double, and for exact roots
 
 /// Expressions as intervals, made of the enclosures of single components on the rung.

@@ -42,7 +42,7 @@ Residual residual_in_double(const sparse::Matrix<double>& h, const std::vector<d
     std::vector<Row> rows(n);
     for (std::size_t i = 0; i < n; ++i) {
         rows[i] = {force[i], std::abs(force[i]),
-                   7}; // the error of the entries (V0) and the product; of the force: its own
+                   7}; // the error of the entries (V0) and the product; of the force: its own; bounds.md V3 (c + 7)
     }
     Row* const row = rows.data();
     const double* const value = h.value.data();
@@ -63,7 +63,7 @@ Residual residual_in_double(const sparse::Matrix<double>& h, const std::vector<d
     std::vector<double> bound(n);
     for (std::size_t i = 0; i < n; ++i) {
         r[i] = row[i].r;
-        unknown[i] = row[i].terms * (u * 1.001 * row[i].size + lost);
+        unknown[i] = row[i].terms * (u * 1.001 * row[i].size + lost); // bounds.md V3
         bound[i] = std::abs(r[i]) + unknown[i];
     }
     return {norm_above(bound), norm_above(unknown)};
@@ -82,12 +82,12 @@ ForceSolution solve_forces(const IsostaticStructure& structure, const Factorisat
     if (!rough && guess.empty()) {
         factorisation.solve_forces(solution.value);
     } else {
-        factorisation.solve_forces_from(solution.value, guess, rough ? accuracy : 4 * u);
+        factorisation.solve_forces_from(solution.value, guess, rough ? accuracy : 4 * u); // guess: accuracy of a solve
     }
     std::vector<double> r(n);
     Residual residual = residual_in_double(h, solution.value, force, r);
     // A residual that is mostly the rounding of its own evaluation cannot be improved in double.
-    if (!rough && !(residual.bound < 3 * residual.rounding)) {
+    if (!rough && !(residual.bound < 3 * residual.rounding)) { // cost: when refinement stops
         factorisation.solve_forces(r);
         for (std::size_t l = 0; l < n; ++l) {
             solution.value[l] += r[l];
@@ -95,6 +95,7 @@ ForceSolution solve_forces(const IsostaticStructure& structure, const Factorisat
         residual = residual_in_double(h, solution.value, force, r);
     }
     solution.residual = max_abs(r);
+    // bounds.md V3 (last operations)
     solution.bound = inverse.verdict == Verdict::proved ? residual.bound / inverse.sigma_min * (1 + 4 * u)
                                                         : std::numeric_limits<double>::infinity();
     return solution;

@@ -21,7 +21,7 @@ struct ForceSolution {
     double bound = 0;
     double residual = 0; ///< max |F - H f| of the returned value, as computed
     Rung rung = Rung::double_bound;
-    int bits = 53; ///< of the arithmetic: 53, 106, those of MPFR, or 0 for exact numbers
+    int bits = 53; ///< of the arithmetic: 53, 106, those of MPFR, or 0 for exact numbers; exact: bits of a double
 };
 
 /// LU solve, one step of refinement where it can help, and the bound |f - f~| <= |H^-1|_2 |F - H f~|_2 that includes

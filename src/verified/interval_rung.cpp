@@ -32,7 +32,7 @@ void ForceRung::solve_anew(RightHandSide& part) {
 PreciseInterval IntervalRung::enclosed(const RightHandSide& part, std::size_t l) const {
     Real value(low_bits);
     mpfr_set_d(value.get(), part.solution.value[l], MPFR_RNDN);
-    PreciseInterval result(value, Real(part.solution.bound, 53), low_bits);
+    PreciseInterval result(value, Real(part.solution.bound, 53), low_bits); // exact: bits of a double
     if (!part.solution.low.empty()) {
         mpfr_add_d(result.low.get(), result.low.get(), part.solution.low[l], MPFR_RNDD);
         mpfr_add_d(result.high.get(), result.high.get(), part.solution.low[l], MPFR_RNDU);
@@ -77,7 +77,7 @@ Order IntervalRung::order_of(const PreciseInterval& value) const {
         order.margin = std::numeric_limits<double>::infinity();
         order.exponent = -std::numeric_limits<double>::infinity();
     } else {
-        Real size(64);
+        Real size(64); // exact: bits of a bound
         const PreciseInterval absolute = magnitude(value);
         mpfr_log2(size.get(), absolute.high.get(), MPFR_RNDU);
         order.exponent = mpfr_nan_p(size.get()) != 0 ? std::numeric_limits<double>::infinity() : size.above();
@@ -101,7 +101,7 @@ PreciseInterval IntervalRung::zero_of(const ForceExpression& force, int) {
 
 Real IntervalRung::digits(const RightHandSide& part, ContactId contact, int bits) const {
     const std::size_t l = contact.index();
-    Real sum(2200); // exact for any two doubles
+    Real sum(2200); // exact: bits for the sum of any two doubles
     mpfr_set_d(sum.get(), part.solution.value[l], MPFR_RNDN);
     mpfr_add_d(sum.get(), sum.get(), part.solution.low.empty() ? 0.0 : part.solution.low[l], MPFR_RNDN);
     Real value(bits);
@@ -110,7 +110,7 @@ Real IntervalRung::digits(const RightHandSide& part, ContactId contact, int bits
 }
 
 double IntervalRung::bound_exponent(const RightHandSide& part) const {
-    return std::log2(part.solution.bound) + 1e-12;
+    return std::log2(part.solution.bound) + 1e-12; // precision.md B6 (a logarithm, rounded up)
 }
 
 } // namespace isostat

@@ -55,11 +55,12 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, int dimensio
     int iterations = 1; // from a good guess; a shift that is too large only costs a second factorisation
     if (cache.vector.size() != n || !std::isfinite(euclidean_norm(cache.vector)) || euclidean_norm(cache.vector) == 0) {
         cache.vector.resize(n);
-        std::mt19937_64 random(12345);
+        std::mt19937_64 random(12345); // guess: random numbers
         for (double& c : cache.vector) {
+            // 11: guess: random numbers; 0x1p-53: guess: random numbers; 0.5: guess: shift
             c = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
         }
-        iterations = 8;
+        iterations = 8; // 8: guess: iterations and shift
     }
     count_work(Work::inverse_bounds);
     CholeskyOutcome outcome;
@@ -73,7 +74,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, int dimensio
     set.finish();
     double shift = 0.5 * outcome.estimated;
     if (std::isfinite(shift) && shift > 0) {
-        for (int attempt = 0; attempt < 4; ++attempt) {
+        for (int attempt = 0; attempt < 4; ++attempt) { // cost: shifts tried, and the next one
             if (!cholesky.factorise(shift)) {
                 shift /= 8;
                 continue;
@@ -81,7 +82,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, int dimensio
             const double square = shift - cholesky.error_bound(shift);
             // A bound that lost more than half to rounding is left to the next attempt, which is in double-double.
             const double sigma = smallest_singular_value(square, outcome.entry_error);
-            if (square > 0.25 * shift && sigma > 0) {
+            if (square > 0.25 * shift && sigma > 0) { // cost: then in double-double
                 outcome.bound = {Verdict::proved, sigma, InverseBound::Route::cholesky};
             }
             break;
@@ -104,8 +105,8 @@ InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisat
     if (worth_more && !worth_more()) {
         return {};
     }
-    double square = 0.5 * first.estimated;
-    while (square > 1e-28 && std::isfinite(square)) {
+    double square = 0.5 * first.estimated;            // guess: shift
+    while (square > 1e-28 && std::isfinite(square)) { // cost: smaller shifts are not tried (bounds.md V1)
         const double proved = shifted_cholesky_double_double(h, square);
         const double sigma = smallest_singular_value(proved, first.entry_error);
         if (sigma > 0) {
@@ -114,7 +115,7 @@ InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisat
         if (proved > 0) {
             break; // the entries have too large errors
         }
-        square /= 64;
+        square /= 64; // guess: shift
     }
     return {};
 }
@@ -124,6 +125,7 @@ double smallest_row_singular_value(const sparse::Matrix<double>& h, int dimensio
     FillOrder order;
     const sparse::Matrix<double> rows = scaled(h);
     cholesky.set(rows, order);
+    // 4: cost: shifts tried, and the next one; 1e-12: cost: smaller singular values are not sought
     for (double shift = 1; shift > 1e-12; shift /= 4) {
         if (cholesky.factorise(shift)) {
             return std::max(

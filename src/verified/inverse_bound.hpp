@@ -60,6 +60,7 @@ InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisat
 /// rounding of the entries and products included (statement V2 with the unit 2^-bits). `undecided` when N_f exceeds
 /// `size_limit`, or at the cap. Cost: N_f solves with `bits` bits; N_f = 200, sigma_min = 1e-40: about 0.1 s.
 InverseBound bound_inverse_multiprecision(const Packing& packing, const IsostaticStructure& structure,
+                                          // 400: cost: larger matrices are given up; 4096: cost: then it is given up
                                           int size_limit = 400, int max_bits = 4096);
 
 /// A bound of the inverse that is at the same time the proof that the exchanged matrix is regular.
@@ -82,6 +83,7 @@ std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts& contacts,
 /// bound that was not carried is left. Cost: 2 to 4 passes.
 std::optional<ProvedExchange> carry_bound(const IsostaticStructure& before, const InverseBound& bound,
                                           const ExchangedContacts& after, const ApproximateInverse& inverse,
+                                          // cost: below it the bound is made anew (exchange.md V8)
                                           std::vector<double> mechanism, double worth = 0.02);
 
 /// A lower bound of the smallest of the `h.rows` singular values of the exact matrix that `h` is rounded from

@@ -10,7 +10,7 @@ namespace isostat {
 
 namespace {
 
-constexpr mpfr_prec_t bound_bits = 64; ///< of sums of magnitudes, rounded upwards
+constexpr mpfr_prec_t bound_bits = 64; ///< of sums of magnitudes, rounded upwards; exact: bits of a bound
 
 /// MPFR numbers of one precision, for SparseLu.
 struct RealArithmetic {
@@ -78,7 +78,7 @@ double sigma_by_rows(const sparse::Matrix<Real>& h, const sparse::Ordering& orde
                 add_magnitude(size, product, scratch);
             }
             // 5 units of the entries, the product, the sums, and second order.
-            const double units = 1.01 * (h.start[j + 1] - h.start[j] + 8);
+            const double units = 1.01 * (h.start[j + 1] - h.start[j] + 8); // precision.md B5
             mpfr_mul_d(size.get(), size.get(), units, MPFR_RNDU);
             mpfr_mul_2si(size.get(), size.get(), -bits, MPFR_RNDU);
             add_magnitude(size, dot, scratch);
@@ -87,8 +87,8 @@ double sigma_by_rows(const sparse::Matrix<Real>& h, const sparse::Ordering& orde
         }
         mpfr_max(row_sum_r.get(), row_sum_r.get(), sum_r.get(), MPFR_RNDU);
         mpfr_max(row_sum_e.get(), row_sum_e.get(), sum_e.get(), MPFR_RNDU);
-        if (!(sum_e.above() < 0.5)) {
-            return 0; // NaN included
+        if (!(sum_e.above() < 0.5)) { // 0.5: precision.md B5
+            return 0;                 // NaN included
         }
     }
     const double column_e = largest(column_sum_e).above();
@@ -98,7 +98,7 @@ double sigma_by_rows(const sparse::Matrix<Real>& h, const sparse::Ordering& orde
     // |H^-1|_2^2 <= |R|_1 / (1 - |E|_1) * |R|_inf / (1 - |E|_inf).
     Real bound(bound_bits);
     mpfr_mul(bound.get(), row_sum_r.get(), largest(column_sum_r).get(), MPFR_RNDU);
-    mpfr_div_d(bound.get(), bound.get(), (1 - column_e) * (1 - 0x1p-52), MPFR_RNDU);
+    mpfr_div_d(bound.get(), bound.get(), (1 - column_e) * (1 - 0x1p-52), MPFR_RNDU); // 0x1p-52: precision.md B5
     mpfr_div_d(bound.get(), bound.get(), (1 - row_sum_e.above()) * (1 - 0x1p-52), MPFR_RNDU);
     mpfr_sqrt(bound.get(), bound.get(), MPFR_RNDU);
     mpfr_ui_div(bound.get(), 1, bound.get(), MPFR_RNDD);
@@ -112,7 +112,7 @@ InverseBound bound_inverse_multiprecision(const Packing& packing, const Isostati
     if (structure.size() > size_limit) {
         return {};
     }
-    for (int bits = 128; bits <= max_bits; bits *= 2) {
+    for (int bits = 128; bits <= max_bits; bits *= 2) { // cost: first bits
         using Place = CorrectedConfiguration<Real>;
         const sparse::Matrix<Real> h =
             Place(Arithmetic<Real>(bits), packing).contact_matrix(structure, Place::Divided::by_distances);

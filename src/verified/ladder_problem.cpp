@@ -14,7 +14,7 @@ namespace {
 
 using roundoff::u;
 /// Accuracy of the forces in records, as a fraction of the largest force.
-constexpr double recorded_accuracy = 1e-7;
+constexpr double recorded_accuracy = 1e-7; // choice: accuracy of records (bounds.md V3)
 
 double largest_of(const std::vector<double>& x) {
     double largest = 0;
@@ -30,12 +30,12 @@ void round_to_pairs(const std::vector<Real>& x, const Real& error, ForceSolution
     const std::size_t n = x.size();
     solution.value.resize(n);
     solution.low.resize(n);
-    Real bound(64);
+    Real bound(64); // 64: exact: bits of a bound
     Real rest(64);
     for (std::size_t l = 0; l < n; ++l) {
         Real left = x[l];
         solution.value[l] = left.nearest();
-        mpfr_sub_d(left.get(), left.get(), solution.value[l], MPFR_RNDN); // exact: cancels the leading bits
+        mpfr_sub_d(left.get(), left.get(), solution.value[l], MPFR_RNDN); // exact, because the leading bits cancel
         solution.low[l] = left.nearest();
         mpfr_sub_d(left.get(), left.get(), solution.low[l], MPFR_RNDN);
         if (mpfr_number_p(left.get()) == 0) { // beyond the range of double
@@ -63,6 +63,7 @@ auto LadderProblem::stored_distance() -> const Distance& {
         stored_distance_ = Distance{};
         if (vertex != nullptr) {
             const double away = vertex->verdict == Verdict::proved
+                                    // precision.md B6 (last operations)
                                     ? (vertex->radius + norm_above(vertex->correction)) * (1 + 4 * u)
                                     : std::numeric_limits<double>::infinity();
             stored_distance_ = Distance{away, normal_rate() * away};
@@ -93,15 +94,16 @@ void LadderProblem::inflate(RightHandSide& part) {
     ForceSolution& s = part.solution;
     const Distance& here = stored_distance();
     const double sigma = inverse.sigma_min;
-    const double left = (sigma - here.uncertainty) * (1 - 8 * u);
+    const double left = (sigma - here.uncertainty) * (1 - 8 * u); // precision.md B6 (last operations)
     if (!(left > sigma / 2)) {
         s.bound = std::numeric_limits<double>::infinity();
         return;
     }
+    // precision.md B6 (last operations)
     const double turned = std::min(here.uncertainty * norm_above(s.value) * (1 + 4 * u), // bounds |(H* - H) x|
                                    turn_of_forces(packing, structure.contacts(), s.value) * here.away);
     const double residual = s.bound * sigma + turned + part.terms.rate * here.away;
-    s.bound = residual / left * (1 + 16 * u);
+    s.bound = residual / left * (1 + 16 * u); // precision.md B6 (c)
 }
 
 } // namespace isostat

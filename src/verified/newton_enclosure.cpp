@@ -28,7 +28,7 @@ Pair exact_sum(double a, double b) {
 }
 /// a * a = sum + error, exactly unless it underflows (halves of 26 bits).
 Pair exact_square(double a) {
-    constexpr double split = 134217729.0;
+    constexpr double split = 134217729.0; // exact: 2^27 + 1
     const double t = split * a;
     const double high = t - (t - a);
     const double low = a - high;
@@ -55,6 +55,7 @@ struct Constraint {
 
 /// F of two disks from the coordinates `distance` of their relative position; d = R_i + R_j.
 Constraint between_disks(std::span<const Pair> distance, Pair d) {
+    // bounds.md V4 (Newton step)
     constexpr double underflow = 0x1p-1000; // far above 16 * 2^-1074, which is slow to multiply with
     const Pair target_square = exact_square(d.sum);
     Pair value{-target_square.sum, -(target_square.error + 2 * d.sum * d.error)};
@@ -64,8 +65,8 @@ Constraint between_disks(std::span<const Pair> distance, Pair d) {
         value = {sum.sum, value.error + (sum.error + (square.error + 2 * x.sum * x.error))};
     }
     const double inverse = 1 / d.sum;
-    const double f = (value.sum + value.error) * 0.5 * inverse;
-    return {f, 4 * u * std::abs(f) + 0x1p-98 * d.sum + underflow * inverse};
+    const double f = (value.sum + value.error) * 0.5 * inverse;              // exact: a half
+    return {f, 4 * u * std::abs(f) + 0x1p-98 * d.sum + underflow * inverse}; // bounds.md V4 (Newton step)
 }
 
 /// x_j - x_i + A m; for an image the difference is one double, exact on the grid (proofs/cells.md, C2).
@@ -85,7 +86,7 @@ Constraints constraints(const Packing& packing, const std::vector<Contact>& cont
     const std::size_t n = contacts.size();
     Constraints result{std::vector<double>(n), std::vector<double>(n)};
     // 5u (5.51u) of the entries, products and sums: of seven terms at most, in space of twelve.
-    result.rows = (packing.dimension == plane ? 16 : 22) * u;
+    result.rows = (packing.dimension == plane ? 16 : 22) * u; // bounds.md V4 (Newton step)
     std::vector<int> count(packing.radius.size(), 0);
     const auto at = [scale, q = packing.q.data()](std::size_t k) { return scale * q[k]; };
     const auto minus = [](double a, double b) { return exact_sum(a, -b); };
@@ -122,7 +123,7 @@ Constraints constraints(const Packing& packing, const std::vector<Contact>& cont
             const Pair x = separation.of_wall(at, minus);
             const Pair sum = exact_sum(x.sum, -(scale * radius[i]));
             const double f = sum.sum + (sum.error + x.error);
-            found = {f, 4 * u * std::abs(f) + 0x1p-98 * std::abs(length)};
+            found = {f, 4 * u * std::abs(f) + 0x1p-98 * std::abs(length)}; // bounds.md V4 (Newton step)
             break;
         }
         case ContactKind::held: break;
@@ -132,12 +133,13 @@ Constraints constraints(const Packing& packing, const std::vector<Contact>& cont
         largest = std::max(largest, std::abs(found.f));
     }
     // From |F| to the gap: F = g (1 + g / 2D) gives |g| <= |F| (1 + |F| / D) while |F| / D < 1/4.
-    result.worst = ratio * 1.0011 + 0x1p-90;
+    result.worst = ratio * 1.0011 + 0x1p-90; // bounds.md V4 (Newton step)
     result.largest = largest / scale;
     const int most = count.empty() ? 0 : *std::max_element(count.begin(), count.end());
     result.lipschitz = packing.cell.any() ? lipschitz_in_cell(packing, contacts) / scale
                        : most == 0        ? 0
-                                          : 2 * std::sqrt(most) / smallest * (1 + 0x1p-49);
+                                   // bounds.md V4 (a), rounding of K
+                                   : 2 * std::sqrt(most) / smallest * (1 + 0x1p-49);
     return result;
 }
 
@@ -162,6 +164,7 @@ struct Rest {
             }
             r[l] = at.f[l] - approach;
             // The row of DF is that of G times d / D.
+            // bounds.md V4 (Newton step)
             bound[l] = std::abs(r[l]) * (1 + 2 * u) + at.error[l] + (at.rows + 1.01 * at.worst) * size;
         }
     }
@@ -175,6 +178,7 @@ std::optional<double> scale_of(const std::vector<double>& q) {
     }
     int exponent = 0;
     std::frexp(longest, &exponent);
+    // cost: then without scaling
     return std::abs(exponent) > 400 ? std::nullopt : std::optional(std::ldexp(1.0, -exponent));
 }
 
@@ -182,8 +186,8 @@ std::optional<double> scale_of(const std::vector<double>& q) {
 /// each with its proved enclosure (V4); lengths have the unit of `at`.
 VertexEnclosure newton(const Constraints& at, const sparse::Matrix<double>& h, const Factorisation& factorisation,
                        double inverse_norm) {
-    constexpr int max_passes = 4;
-    constexpr double enough = 2; // further passes divide the radius by 3 at most
+    constexpr int max_passes = 4; // cost: passes
+    constexpr double enough = 2;  // further passes divide the radius by 3 at most
     VertexEnclosure vertex;
     vertex.radius = roundoff::infinity;
     std::vector<double> step = at.f; // approach velocities equal to the gaps that they close
@@ -192,15 +196,17 @@ VertexEnclosure newton(const Constraints& at, const sparse::Matrix<double>& h, c
     for (int pass = 1; pass <= max_passes; ++pass) {
         left.after(step, at, h);
         const double length = norm_above(step);
-        const double rest = inverse_norm * norm_above(left.bound) * (1 + 4 * u);
-        const double eta = (length + rest) * (1 + 4 * u);
-        const double product = inverse_norm * at.lipschitz * eta * (1 + 8 * u);
+        const double rest = inverse_norm * norm_above(left.bound) * (1 + 4 * u); // bounds.md V4 (Newton step)
+        const double eta = (length + rest) * (1 + 4 * u);                        // bounds.md V4 (Newton step)
+        const double product = inverse_norm * at.lipschitz * eta * (1 + 8 * u);  // bounds.md V4 (b)
+        // bounds.md V4 (b)
         const double radius = eta * (1 + product) * (1 + 8 * u); // (1 - sqrt(1 - 2h)) / h <= 1 + h up to 1/4
-        if (product <= 0.25 && radius < vertex.radius) {
+        if (product <= 0.25 && radius < vertex.radius) {         // 0.25: bounds.md V4 (e)
             vertex.verdict = Verdict::proved;
             vertex.radius = radius;
         }
         // The exact step ends within `rest` of this one, and the vertex is at most eta * product from its end.
+        // bounds.md V4 (e), last operations
         vertex.step_radius = product <= 0.25 ? (rest + eta * product) * (1 + 8 * u) : roundoff::infinity;
         if (!(rest > enough * length) || pass == max_passes) {
             break;
@@ -224,10 +230,10 @@ VertexEnclosure enclose_vertex(const Packing& packing, const IsostaticStructure&
         return enclose_vertex(packing, structure, inverse);
     }
     const Constraints at = constraints(packing, structure.contacts(), *scale);
-    if (!(at.worst < 1e-3)) {
+    if (!(at.worst < 1e-3)) { // bounds.md V4 (test of the gaps)
         return enclose_vertex(packing, structure, inverse);
     }
-    const double inverse_norm = 1 / inverse.sigma_min * (1 + 2 * at.worst + 8 * u);
+    const double inverse_norm = 1 / inverse.sigma_min * (1 + 2 * at.worst + 8 * u); // bounds.md V4 (b)
     VertexEnclosure vertex = newton(at, structure.matrix(), factorisation, inverse_norm);
     if (vertex.verdict != Verdict::proved) {
         return enclose_vertex(packing, structure, inverse);

@@ -10,11 +10,12 @@ namespace isostat {
 
 /// Raises a computed sum of at most so many terms >= 0, or its root, above the exact one (B1).
 constexpr double sum_slack(std::size_t terms) {
+    // 1e-10: precision.md B1; 0x1p-53: exact: u, the unit of rounding
     return 1 + std::max(1e-10, 2 * static_cast<double>(terms) * 0x1p-53);
 }
 
 /// A product or quotient that underflows errs by at most this (in truth 2^-1075).
-inline constexpr double underflow_unit = 0x1p-1074;
+inline constexpr double underflow_unit = 0x1p-1074; // precision.md B1
 
 /// An upper bound of the 2-norm, scaled by a power of two where a
 /// square might under- or overflow. NaN or infinity when an entry is.
@@ -23,14 +24,14 @@ inline double norm_above(std::span<const double> x) {
     for (const double c : x) {
         plain += c * c;
     }
-    if (plain > 0x1p-900 && plain < 0x1p1000) { // the underflow is below 2^-1022 n
+    if (plain > 0x1p-900 && plain < 0x1p1000) { // the underflow is below 2^-1022 n; precision.md B1
         return std::sqrt(plain) * sum_slack(x.size());
     }
     double largest = 0;
     for (const double entry : x) {
         const double c = std::abs(entry);
-        if (!(c <= 0x1p1020)) {
-            return c * 16; // NaN, infinity, or too large to be used
+        if (!(c <= 0x1p1020)) { // precision.md B1
+            return c * 16;      // NaN, infinity, or too large to be used; precision.md B1
         }
         largest = std::max(largest, c);
     }
@@ -39,6 +40,7 @@ inline double norm_above(std::span<const double> x) {
     }
     int exponent = 0;
     std::frexp(largest, &exponent);
+    // precision.md B1
     exponent = std::max(exponent, -1000); // the scale stays finite, and no square of such small entries underflows
     const double scale = std::ldexp(1.0, -exponent);
     double sum = 0;

@@ -13,8 +13,10 @@ struct LadderOptions {
     /// Relative accuracy, estimated, of the first solutions with reused factors. The first climb improves them to
     /// rounding, still on the rung double. 0: to rounding at once, as with fresh factors.
     double first_accuracy = 0;
-    int first_bits = 256;  ///< bits of the first rung in MPFR; doubled on every climb
-    int max_bits = 4096;   ///< cap: a comparison undecided there is a tie "to max_bits bits", unless exact
+    int first_bits = 256; ///< bits of the first rung in MPFR; doubled on every climb; cost: first bits of a climb
+    // cost: then undecided
+    int max_bits = 4096; ///< cap: a comparison undecided there is a tie "to max_bits bits", unless exact
+    // cost: larger systems are not solved exactly
     int exact_size = 2000; ///< largest N_f for exact numbers (0.04 s at 200, 1 s at 800, grows like N_f^2.5)
 };
 
@@ -30,7 +32,7 @@ struct Order {
 };
 
 /// Bits, below the size of the terms, to which two quantities must agree to count as tied without an exact zero.
-inline constexpr int tie_bits = 1000;
+inline constexpr int tie_bits = 1000; // choice: what perturbation.md calls a tie
 
 /// A tie: proved to be exactly 0, or to be smaller than `size` 2^-tie_bits. `size` > 0: size of the terms.
 bool is_tie(const Order& order, double size);

@@ -54,6 +54,7 @@ PreciseInterval gap_rate(const EnclosedVertex<Real>& vertex, const DofMap& dofs,
     // |x.v - x*.v*| <= |x| |v - v*| + |x - x*| |v*|; a component of x errs by at most 8 unit |x|, one of v by 8 unit
     // of `speed`; two products and sums follow.
     const UpperBound away = separation_weight(pair) * vertex.radius();
+    // precision.md B14
     const UpperBound error = size * unknown + away * (speed + unknown) + 32 * a.unit() * size * speed;
     const PreciseInterval product(sum, error.real(), a.bits());
     const Real length = vertex.at().length(pair); // of x*: the pair touches
@@ -68,7 +69,7 @@ PreciseInterval turning(const EnclosedVertex<Real>& vertex, const DofMap& dofs, 
         return PreciseInterval(a.bits());
     }
     const auto enclosed = [&](const Real& x, const UpperBound& radius) {
-        return PreciseInterval(x, (radius + 8 * a.unit() * a.size(x)).real(), a.bits());
+        return PreciseInterval(x, (radius + 8 * a.unit() * a.size(x)).real(), a.bits()); // 8: precision.md B14
     };
     const auto component = [&](std::size_t coordinate) {
         const int dof = dofs.dof_of(coordinate);
@@ -178,7 +179,7 @@ Enclosure PreciseFirstOrder::bend(ContactId opened, int direction, const Contact
     if (acceleration.value.empty()) {
         return unknown;
     }
-    constexpr double rounded_up = 1 + 0x1p-50;
+    constexpr double rounded_up = 1 + 0x1p-50; // precision.md B1 (last operations)
     acceleration.bound += norm_of_bounds(open) / at->vertex.sigma() * rounded_up;
     return (gap_rate(at->vertex, structure_.dofs(), acceleration, pair) +
             turning(at->vertex, structure_.dofs(), velocity, pair))

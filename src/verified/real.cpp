@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+// exact: all other numbers of this file: bits of a margin
+
 namespace isostat {
 
 double PreciseInterval::margin() const {
@@ -19,7 +21,7 @@ Enclosure PreciseInterval::rounded() const {
     Real centre(64);
     mpfr_add(centre.get(), low.get(), high.get(), MPFR_RNDN);
     mpfr_div_2ui(centre.get(), centre.get(), 1, MPFR_RNDN);
-    const Real value(centre.nearest(), 53);
+    const Real value(centre.nearest(), 53); // exact: bits of a double
     Real below(64);
     Real over(64);
     mpfr_sub(below.get(), value.get(), low.get(), MPFR_RNDU);
@@ -31,7 +33,7 @@ Enclosure PreciseInterval::rounded() const {
 }
 
 PreciseInterval difference(double at, double from, mpfr_prec_t bits) {
-    const Real a(at, 53);
+    const Real a(at, 53); // 53: exact: bits of a double
     const Real b(from, 53);
     PreciseInterval result(bits);
     mpfr_sub(result.low.get(), a.get(), b.get(), MPFR_RNDD);

@@ -16,7 +16,7 @@ namespace isostat {
 /// (two threads at two precisions would race), and its functions do not round down or up.
 class Real {
   public:
-    Real() : Real(53) {}
+    Real() : Real(53) {} // 53: exact: bits of a double
     explicit Real(mpfr_prec_t bits) {
         mpfr_init2(x_, bits);
         mpfr_set_zero(x_, 1);

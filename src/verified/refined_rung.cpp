@@ -50,7 +50,7 @@ template <class T> class RefinedRung final : public IntervalRung {
         if constexpr (in_pairs) {
             return IntervalRung::bound_exponent(part);
         }
-        Real logarithm(64);
+        Real logarithm(64); // exact: bits of a bound
         mpfr_log2(logarithm.get(), part.refined.bound.real().get(), MPFR_RNDU);
         return logarithm.above();
     }
@@ -64,6 +64,7 @@ template <class T> class RefinedRung final : public IntervalRung {
         if constexpr (in_pairs) {
             return IntervalRung::enclosed(part, l);
         }
+        // exact: more bits than the numbers
         return {part.refined.value[l], part.refined.bound.real(), this->bits() + 32};
     }
     /// Whether the bounds are below 2^(-bits/2) of the largest force, so that more bits will decide more.
@@ -108,6 +109,7 @@ template <class T> std::vector<T> RefinedRung<T>::guess(const RightHandSide& par
 template <class T> void RefinedRung<T>::solve(RightHandSide& part) {
     this->problem_.solve_in_double(part, 0);
     const double rate = part.terms.rate;
+    // precision.md B2 (d)
     const double error = rate == 0 || !vertex_ ? 0 : rate * above(vertex_->distance()) * (1 + 4 * u);
     std::vector<T> start = guess(part);
     BoundedVector<T> solved = system_.forces(load(part), error, start);
@@ -184,6 +186,7 @@ std::unique_ptr<ForceRung> double_double_rung(LadderProblem& problem) {
     const bool loads = std::all_of(parts.begin(), parts.end(), [](const RightHandSide& part) {
         return part.zero || in_range_of_products(norm_above(part.force));
     });
+    // exact: bits of double-double
     return loads && in_range_of_products(problem.packing) ? refined_rung<dd_real>(problem, {}, {}, 106) : nullptr;
 }
 

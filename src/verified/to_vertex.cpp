@@ -64,7 +64,7 @@ std::optional<Failure> newton_step(Packing& packing, const std::vector<Contact>&
 } // namespace
 
 std::optional<Failure> to_vertex(Packing& packing, const std::vector<Contact>& contacts, long& steps, double reach) {
-    constexpr int max_steps = 30;
+    constexpr int max_steps = 30; // guess: when Newton stops
     Packing here = packing;
     double before = largest_gap(here, contacts);
     for (int k = 0; !(before <= grid_step(here)) || k == 0; ++k) {
@@ -79,7 +79,7 @@ std::optional<Failure> to_vertex(Packing& packing, const std::vector<Contact>& c
         const double now = largest_gap(next, contacts);
         if (!(now < before)) {
             // Gaps of a few grid steps are at the level of rounding; larger gaps mean that the start was too far.
-            if (before <= 64 * grid_step(here)) {
+            if (before <= 64 * grid_step(here)) { // guess: when Newton stops
                 break;
             }
             return failed(FailureKind::not_converged, "Newton on the gaps stopped at {:.3g} after {} steps", before,

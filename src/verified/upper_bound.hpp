@@ -49,7 +49,7 @@ class UpperBound {
     }
 
   private:
-    static constexpr mpfr_prec_t bits = 64;
+    static constexpr mpfr_prec_t bits = 64; // exact: bits of a bound
     Real x_;
 };
 

@@ -21,13 +21,13 @@ inline double target(const Packing& packing, const Contact& contact) {
 
 /// Whether products of such doubles, and their rounding errors, keep all digits (V0).
 inline bool in_range_of_products(double size) {
-    return size > 1e-100 && size < 1e100;
+    return size > 1e-100 && size < 1e100; // precision.md B2 (e)
 }
 /// Whether this holds for all lengths of a packing.
 inline bool in_range_of_products(const Packing& packing) {
     const auto longer = [](double a, double b) { return std::abs(a) < std::abs(b); };
     return in_range_of_products(packing.min_radius()) &&
-           std::abs(*std::max_element(packing.q.begin(), packing.q.end(), longer)) < 1e100;
+           std::abs(*std::max_element(packing.q.begin(), packing.q.end(), longer)) < 1e100; // precision.md B2 (e)
 }
 
 /// |m| of a contact, which bounds the change of r per change of the cell. 0 without an image.
@@ -43,6 +43,7 @@ inline double separation_weight_square(const Contact& contact) {
 }
 inline double separation_weight(const Contact& contact) {
     using roundoff::root2;
+    // bounds.md V4 (a), rounding of K
     return contact.image.is_here() ? root2 : std::sqrt(separation_weight_square(contact)) * (1 + 0x1p-50);
 }
 
@@ -75,7 +76,7 @@ class HeaviestSum {
     }
     /// The largest sum, including roundings of its terms (B1).
     [[nodiscard]] double largest() const {
-        return std::max(cell_, *std::max_element(at_disk_.begin(), at_disk_.end())) * (1 + 1e-9);
+        return std::max(cell_, *std::max_element(at_disk_.begin(), at_disk_.end())) * (1 + 1e-9); // precision.md B1
     }
 
   private:
@@ -111,7 +112,7 @@ inline double lipschitz(const Packing& packing, const std::vector<Contact>& cont
         }
     }
     const double most = *std::max_element(count.begin(), count.end());
-    return most == 0 ? 0 : 2 * std::sqrt(most) / smallest * (1 + 0x1p-50);
+    return most == 0 ? 0 : 2 * std::sqrt(most) / smallest * (1 + 0x1p-50); // cells.md C5, rounding of w
 }
 
 /// Largest |gap| / D over the disk contacts.
@@ -128,7 +129,7 @@ inline double worst_gap_ratio(const Packing& packing, const std::vector<Contact>
 /// unit vectors of d and d' differ by at most |d - d'| / min(|d|, |d'|), and every distance there is above 0.99 D (\pre
 /// worst_gap_ratio below 1e-3 and |q - q'| below D_min / 1000, as V4 checks); then as in V4 (a).
 inline double normal_rate(double lipschitz_constant) {
-    return 1.02 * lipschitz_constant;
+    return 1.02 * lipschitz_constant; // bounds.md turn_of_forces
 }
 inline double normal_rate(const Packing& packing, const std::vector<Contact>& contacts) {
     return normal_rate(lipschitz(packing, contacts));
@@ -146,7 +147,7 @@ inline double turn_of_forces(const Packing& packing, const std::vector<Contact>&
                 heaviest.add_turn(contacts[l], std::abs(x[l]) / target(packing, contacts[l]));
             }
         }
-        return 1.03 * heaviest.largest();
+        return 1.03 * heaviest.largest(); // cells.md C5 (turn of forces, roundings)
     }
     std::vector<double> sum(packing.radius.size(), 0.0);
     for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -157,7 +158,7 @@ inline double turn_of_forces(const Packing& packing, const std::vector<Contact>&
             sum[static_cast<std::size_t>(contact.j)] += part;
         }
     }
-    return 2.05 * *std::max_element(sum.begin(), sum.end());
+    return 2.05 * *std::max_element(sum.begin(), sum.end()); // bounds.md turn_of_forces
 }
 
 } // namespace isostat

@@ -47,7 +47,7 @@ enum class CheckerArithmetic {
 };
 
 /// Largest number of rows and columns for which the checker eliminates exactly.
-inline constexpr int largest_exact_matrix = 100;
+inline constexpr int largest_exact_matrix = 100; // cost: larger matrices are not eliminated exactly (checker.md K3)
 
 /// Checks every claim from the state and the claims alone. Does not throw on false claims. Coordinates, radii and loads
 /// are the stored doubles, taken as exact rationals. All that `State` can hold is supported, except held coordinates:

@@ -12,7 +12,7 @@ namespace isostat {
 
 /// The largest number of axes, and of tilts of a cell. Arrays over axes and tilts have an entry for each; entries that
 /// the dimension does not use hold 0.
-inline constexpr std::size_t most_axes = 3;
+inline constexpr std::size_t most_axes = 3; // 3: exact: axes, tilts and coordinates of an image in three dimensions
 inline constexpr std::size_t most_tilts = 3;
 /// The dimension of statements that hold in the plane only; files that use this constant never get spheres.
 inline constexpr int plane = 2;
@@ -63,7 +63,7 @@ enum class ContactKind : std::uint8_t { disk_disk, bar, lower_wall, upper_wall, 
 
 /// Which image of a disk in a periodic cell: m_a periods further along the period vector a. All 0 in a box.
 struct Image {
-    std::array<std::int8_t, 3> m{};
+    std::array<std::int8_t, 3> m{}; // exact: axes, tilts and coordinates of an image in three dimensions
     [[nodiscard]] constexpr bool is_here() const { return m[0] == 0 && m[1] == 0 && m[2] == 0; }
     [[nodiscard]] constexpr Image opposite() const {
         return {{static_cast<std::int8_t>(-m[0]), static_cast<std::int8_t>(-m[1]), static_cast<std::int8_t>(-m[2])}};

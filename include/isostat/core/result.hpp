@@ -29,10 +29,10 @@ class Error : public std::runtime_error {
     /// 64, 65, 70 or 74.
     [[nodiscard]] int exit_status() const {
         switch (kind_) {
-        case ErrorKind::usage: return 64;
-        case ErrorKind::bad_input: return 65;
-        case ErrorKind::internal: return 70;
-        case ErrorKind::cannot_write: return 74;
+        case ErrorKind::usage: return 64;        // exact: sysexits.h, EX_USAGE
+        case ErrorKind::bad_input: return 65;    // exact: sysexits.h, EX_DATAERR
+        case ErrorKind::internal: return 70;     // 70: exact: sysexits.h, EX_SOFTWARE
+        case ErrorKind::cannot_write: return 74; // exact: sysexits.h, EX_IOERR
         }
         return 70;
     }

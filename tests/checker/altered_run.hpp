@@ -40,7 +40,8 @@ inline std::vector<std::pair<std::string, std::optional<Json>>> others(const Jso
     if (value.is_number()) {
         const double x = value.get<double>();
         const double step = x == 0 ? 1e-3 : 1e-3 * std::abs(x);
-        return {{"more", x + step}, {"less", x - step}, {"far", -3 * x - 1e3}, {"huge", 1e200}};
+        const std::string at = x == 0 ? " at 0" : ""; // is tried beside other numbers of the field
+        return {{"more" + at, x + step}, {"less" + at, x - step}, {"far" + at, -3 * x - 1e3}, {"huge" + at, 1e200}};
     }
     if (value.is_string()) {
         const auto text = value.get<std::string>();

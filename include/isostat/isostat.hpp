@@ -10,7 +10,6 @@
 #include <isostat/core/contact.hpp>
 #include <isostat/core/machine.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/core/verdict.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/exact/number.hpp>

@@ -9,7 +9,6 @@
 #include "io/json.hpp"
 
 #include <isostat/core/result.hpp>
-#include <isostat/core/verdict.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>

@@ -7,7 +7,6 @@
 #include "snap/soft_list.hpp"
 
 #include <isostat/core/result.hpp>
-#include <isostat/core/verdict.hpp>
 
 #include <fmt/format.h>
 

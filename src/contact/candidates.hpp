@@ -3,7 +3,7 @@
 /// Complete lists of contact candidates and the certificate of non-overlap (proofs/contact_candidates.md).
 
 #include <isostat/contact/state.hpp>
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <memory>
 #include <optional>

@@ -1,5 +1,5 @@
 // These functions are not in the header because a user's compiler may have other flags.
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 namespace isostat {
 

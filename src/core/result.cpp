@@ -1,6 +1,6 @@
 #include "core/refuse.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <stdexcept>
 #include <utility>

@@ -2,7 +2,7 @@
 /// \file
 /// Counts of the work that the program did: the evidence that a scene pays only for what it needs.
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <array>
 #include <cstddef>

@@ -2,7 +2,7 @@
 /// \file
 /// Self-stresses and mechanisms of packings that are too large for exact bases.
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
 #include <string>

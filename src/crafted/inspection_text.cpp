@@ -4,7 +4,7 @@
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
 #include <fmt/format.h>

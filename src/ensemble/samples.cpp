@@ -4,7 +4,6 @@
 #include "scene/seed.hpp"
 
 #include <isostat/core/result.hpp>
-#include <isostat/core/verdict.hpp>
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include "core/refuse.hpp"
 
 #include <isostat/contact/state.hpp>
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <nlohmann/json.hpp>

@@ -8,7 +8,7 @@
 #include "io/record_digests.hpp"
 #include "io/record_text.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 

@@ -5,7 +5,7 @@
 
 #include "core/refuse.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <toml++/toml.h>
 

@@ -4,7 +4,7 @@
 
 #include "contact/separation.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <qd/dd_real.h>

@@ -2,7 +2,7 @@
 /// \file
 /// Words of files and options for walls, loads and axes.
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
 
 namespace isostat {

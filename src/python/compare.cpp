@@ -6,7 +6,6 @@
 
 #include <isostat/compare/compare.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/core/verdict.hpp>
 
 #include <atomic>
 

@@ -5,7 +5,6 @@
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/core/verdict.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <pybind11/numpy.h>

@@ -4,7 +4,7 @@
 #include "convert.hpp"
 #include "core/refuse.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/scene/scene.hpp>
 
 namespace isostat::python {

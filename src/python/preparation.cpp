@@ -2,7 +2,7 @@
 #include "convert.hpp"
 #include "core/refuse.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/preparation/preparation.hpp>

@@ -3,7 +3,7 @@
 #include "exact/rank.hpp"
 #include "rigidity/strained_matrix.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/exact/number.hpp>
 #include <isostat/rigidity/counting.hpp>
 

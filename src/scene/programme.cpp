@@ -1,7 +1,7 @@
 #include "core/refuse.hpp"
 #include "core/roundoff.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <fmt/format.h>

@@ -6,7 +6,7 @@
 #include "snap/backbone.hpp"
 #include "verified/to_vertex.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/snap/snap.hpp>
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 
 #include "core/roundoff.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <cmath>
 

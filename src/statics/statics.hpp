@@ -6,7 +6,6 @@
 #include "verified/force_ladder.hpp"
 
 #include <isostat/core/result.hpp>
-#include <isostat/core/verdict.hpp>
 #include <isostat/packing/load.hpp>
 
 #include <memory>

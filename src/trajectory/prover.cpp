@@ -107,6 +107,18 @@ std::optional<Packing> nearer(const Vertex& vertex) {
     return at;
 }
 
+/// The guesses are moved out of the proposal.
+Exchange exchange_of(ArcProposal& arc) {
+    return {arc.end,
+            arc.opening.contact,
+            arc.record.closed,
+            std::move(arc.contacts),
+            std::move(arc.approximate),
+            std::move(arc.forces),
+            std::move(arc.tangent),
+            arc.cost_before};
+}
+
 /// A coarser grid rounds a held coordinate, or the coordinate relative to which it is held: then it is held elsewhere
 /// at the end of the arc, and the end belongs to another curve.
 bool holds_elsewhere(const Vertex& from, const ArcProposal& arc) {
@@ -224,7 +236,7 @@ std::optional<Failure> Prover::reach(ArcProof& proof, const Vertex& from, ArcPro
     }
     LadderOptions options = ladder();
     options.first_accuracy = ties_->settles() ? 0 : enough_to_decide; // telling ties from zeros needs full accuracy
-    auto made = Vertex::exchanged(from, arc, at.load, bounds_, options);
+    auto made = Vertex::exchanged(from, exchange_of(arc), at.load, bounds_, options);
     if (!made.ok()) {
         if (from.perturbed && from.perturbed->statics.chooses() && !arc.stays) {
             proof.list_for_end = list_for_the_end(from, arc, at.stress());

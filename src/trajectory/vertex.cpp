@@ -2,7 +2,6 @@
 
 #include "contact/images.hpp"
 #include "contact/words.hpp"
-#include "trajectory/steering.hpp"
 #include "verified/inverse_bound.hpp"
 
 #include <algorithm>
@@ -108,38 +107,38 @@ Result<std::unique_ptr<Vertex>> Vertex::make(Beginning beginning, const Load& lo
     return vertex;
 }
 
-Result<std::unique_ptr<Vertex>> Vertex::exchanged(const Vertex& from, ArcProposal& arc, const Load& load,
+Result<std::unique_ptr<Vertex>> Vertex::exchanged(const Vertex& from, Exchange to, const Load& load,
                                                   InverseBoundCache& cache, LadderOptions options) {
-    if (arc.contacts) {
-        auto made = prove(from, arc, load, cache, options);
+    if (to.contacts) {
+        auto made = prove(from, to, load, cache, options);
         if (!made.ok() || made.value() != nullptr) {
             return made;
         }
     }
     std::vector<Contact> contacts = from.structure.contacts();
-    contacts[arc.opening.contact.index()] = arc.record.closed;
+    contacts[to.leaves.index()] = to.enters;
     options.first_accuracy = 0;
-    return make(arc.end, std::move(contacts), load, cache, options); // this gives the reason for a failure
+    return make(std::move(to.end), std::move(contacts), load, cache, options); // this gives the reason for a failure
 }
 
 /// Null when no bound was proved in doubles.
-Result<std::unique_ptr<Vertex>> Vertex::prove(const Vertex& from, ArcProposal& arc, const Load& load,
+Result<std::unique_ptr<Vertex>> Vertex::prove(const Vertex& from, Exchange& to, const Load& load,
                                               InverseBoundCache& cache, LadderOptions options) {
     std::vector<double> mechanism(static_cast<std::size_t>(from.structure.size()), 0.0);
-    for (std::size_t mu = 0; mu < mechanism.size() && !arc.tangent.empty(); ++mu) {
-        mechanism[mu] = arc.tangent[from.structure.dofs().coordinate_of(mu)];
+    for (std::size_t mu = 0; mu < mechanism.size() && !to.tangent.empty(); ++mu) {
+        mechanism[mu] = to.tangent[from.structure.dofs().coordinate_of(mu)];
     }
-    auto bound = carry_bound(from.structure, from.inverse, *arc.contacts, *arc.approximate, std::move(mechanism));
+    auto bound = carry_bound(from.structure, from.inverse, *to.contacts, *to.approximate, std::move(mechanism));
     if (!bound) {
-        bound = bound_exchanged(*arc.contacts, *arc.approximate, cache);
+        bound = bound_exchanged(*to.contacts, *to.approximate, cache);
     }
     if (!bound) {
         return std::unique_ptr<Vertex>();
     }
     std::unique_ptr<Vertex> vertex(new Vertex(
-        arc.end, IsostaticStructure::exchanged(std::move(*arc.contacts), bound->proof), std::move(*arc.approximate),
-        bound->bound, load, {options, nullptr, &from.statics, std::move(arc.forces)}));
-    vertex->cost_before = arc.cost_before;
+        std::move(to.end), IsostaticStructure::exchanged(std::move(*to.contacts), bound->proof),
+        std::move(*to.approximate), bound->bound, load, {options, nullptr, &from.statics, std::move(to.forces)}));
+    vertex->cost_before = to.cost_before;
     if (auto failure = vertex->lacking()) {
         return *failure;
     }

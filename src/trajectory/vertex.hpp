@@ -3,6 +3,8 @@
 /// A vertex with everything that is known about it: private to the room.
 
 #include "contact/candidates.hpp"
+#include "linear/approximate_inverse.hpp"
+#include "rigidity/isostatic.hpp"
 #include "statics/decisions.hpp"
 #include "statics/perturbed.hpp"
 #include "trajectory/kept_candidates.hpp"
@@ -38,7 +40,18 @@ struct FirstOrderVertex {
     std::vector<ContactId> zeros; ///< of an equilibrium: forces that vanish in the base, see `OpeningDecision`
 };
 
-struct ArcProposal;
+/// The vertex at the end of an arc, whose list differs in one contact from that of the vertex at the start. Everything
+/// except the configuration and the two contacts is a guess, which may be absent.
+struct Exchange {
+    Packing end;
+    ContactId leaves; ///< its place is taken by `enters`
+    Contact enters;
+    std::optional<ExchangedContacts> contacts{};     ///< the list with its matrix; absent: structurally singular
+    std::optional<ApproximateInverse> approximate{}; ///< of this matrix; present where `contacts` are
+    std::vector<double> forces{};                    ///< finite forces; empty: not known
+    std::vector<double> tangent{};                   ///< of the arc at its end, on coordinates; empty: not known
+    double cost_before = 0;                          ///< see `Vertex`
+};
 
 /// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable:
 /// the parts refer to each other.
@@ -58,11 +71,10 @@ class Vertex {
     static Result<Beginning> begin(Packing packing, std::vector<Contact> contacts);
     static Result<std::unique_ptr<Vertex>> make(Beginning beginning, const Load& load, InverseBoundCache& cache,
                                                 LadderOptions options = {});
-    /// The vertex at the end of a proposed arc: one contact of `from` exchanged. The regularity of the new structure
-    /// and the bound of its inverse are proved together, by the cheapest of: the bound of `from` carried over (V8), a
-    /// Cholesky factorisation (V1), everything anew as in `make`. All parts of the proposal except the configuration
-    /// and the contacts are treated as guesses; parts that are used are moved out of it.
-    static Result<std::unique_ptr<Vertex>> exchanged(const Vertex& from, ArcProposal& arc, const Load& load,
+    /// The vertex with one contact of `from` exchanged. The regularity of the new structure and the bound of its
+    /// inverse are proved together, by the cheapest of: the bound of `from` carried over (V8), a Cholesky factorisation
+    /// (V1), everything anew as in `make`.
+    static Result<std::unique_ptr<Vertex>> exchanged(const Vertex& from, Exchange to, const Load& load,
                                                      InverseBoundCache& cache, LadderOptions options);
     Vertex(const Vertex&) = delete;
     Vertex& operator=(const Vertex&) = delete;
@@ -101,7 +113,7 @@ class Vertex {
            LadderOptions options);
     Vertex(Packing p, IsostaticStructure s, ApproximateInverse approximate, const InverseBound& bound, const Load& load,
            StaticsHints hints);
-    static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, ArcProposal& arc, const Load& load,
+    static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, Exchange& to, const Load& load,
                                                  InverseBoundCache& cache, LadderOptions options);
     /// Puts into `gaps` the signs that double-double left open,
     /// computed with as many bits as the ladder has. Failure: the tie.

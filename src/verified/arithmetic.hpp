@@ -5,7 +5,7 @@
 #include "verified/norm.hpp"
 #include "verified/upper_bound.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <qd/dd_real.h>
 

@@ -5,7 +5,7 @@
 #include "verified/inverse_bound.hpp"
 #include "verified/order.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <vector>
 

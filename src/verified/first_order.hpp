@@ -5,7 +5,7 @@
 #include "rigidity/contact_pattern.hpp"
 #include "verified/configuration.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
 
 #include <optional>

@@ -4,7 +4,7 @@
 
 #include "verified/inverse_bound.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <array>
 #include <span>

@@ -5,7 +5,7 @@
 #include "linear/factorisation.hpp"
 #include "sparse/pattern.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <functional>
 #include <memory>

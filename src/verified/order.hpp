@@ -2,7 +2,7 @@
 /// \file
 /// Results of proved comparisons, and limits of their precision.
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <limits>
 

@@ -1,7 +1,7 @@
 #pragma once
 // MPFR numbers as values, and intervals of them: private to the room.
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <mpfr.h>
 

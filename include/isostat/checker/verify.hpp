@@ -4,7 +4,7 @@
 /// them only the data (states, contacts, claims) and the readers of the files: no matrix, bound, solver or list of
 /// neighbours. Mathematics, what is proved and what is only compared: proofs/checker.md (K1 to K26; "Runs").
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <filesystem>

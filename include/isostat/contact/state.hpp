@@ -4,7 +4,7 @@
 /// packing, load and contacts, as a file stores them.
 
 #include <isostat/core/contact.hpp>
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
 
 #include <array>

@@ -5,7 +5,6 @@
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/core/verdict.hpp>
 #include <isostat/exact/number.hpp>
 #include <isostat/packing/load.hpp>
 #include <isostat/rigidity/counting.hpp>

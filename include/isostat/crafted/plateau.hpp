@@ -3,7 +3,7 @@
 /// Packings of other programs: counts as functions of the gap below which a pair is taken for a contact.
 
 #include <isostat/contact/state.hpp>
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/packing/packing.hpp>
 #include <isostat/rigidity/counting.hpp>
 

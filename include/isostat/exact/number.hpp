@@ -3,7 +3,7 @@
 /// Real numbers kept exactly: sums of rationals times square roots of rationals (multi-quadratic numbers); and linear
 /// algebra over them: rank, kernel, systems of inequalities. Every result is proved.
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <compare>
 #include <cstdint>

@@ -3,7 +3,7 @@
 /// Packings of disks and of spheres written by other programs.
 
 #include <isostat/contact/state.hpp>
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <filesystem>

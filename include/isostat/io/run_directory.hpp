@@ -2,7 +2,7 @@
 /// \file
 /// The folder of a run: at every instant it holds all records up to the last one, complete.
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <chrono>

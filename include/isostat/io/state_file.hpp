@@ -3,7 +3,7 @@
 /// Files of states and of certificates.
 
 #include <isostat/contact/state.hpp>
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <filesystem>
 #include <optional>

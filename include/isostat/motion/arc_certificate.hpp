@@ -2,7 +2,7 @@
 /// \file
 /// What was proved of an arc at the level `arcs` (proofs/arcs.md).
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <string>
 #include <vector>

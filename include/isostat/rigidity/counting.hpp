@@ -4,7 +4,7 @@
 /// each way in which its cell may strain.
 
 #include <isostat/contact/state.hpp>
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <array>

@@ -6,7 +6,6 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/core/verdict.hpp>
 
 #include <cstdint>
 #include <limits>

@@ -4,7 +4,7 @@
 /// (proofs/perturbation.md) or a choice of the rule (proofs/degenerate.md) settled.
 
 #include <isostat/contact/state.hpp>
-#include <isostat/core/verdict.hpp>
+#include <isostat/core/result.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -4,7 +4,6 @@
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/core/verdict.hpp>
 #include <isostat/motion/arc_certificate.hpp>
 #include <isostat/statics/rules.hpp>
 

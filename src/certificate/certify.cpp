@@ -8,6 +8,7 @@
 #include "core/dot.hpp"
 #include "core/roundoff.hpp"
 #include "verified/to_vertex.hpp"
+#include "verified/vertex_bounds.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/machine.hpp>
@@ -24,12 +25,24 @@ namespace isostat {
 namespace {
 
 using roundoff::infinity;
+using roundoff::u;
 
 /// Words for the first force that is negative, and for the first whose sign is not known; empty: there is none.
 struct SignFailures {
     std::string negative;
     std::string doubtful;
 };
+
+/// Bound of |gap| of a contact at the stored coordinates.
+double largest_gap(const ProvedStructure& at) {
+    double largest = 0;
+    for (const Contact& contact : at.structure.contacts()) {
+        const double h = std::abs(gap(at.packing, contact));
+        // 8: bounds.md V4 (a), rounding of a gap; 4: bounds.md V4 (b), two roundings of the largest gap
+        largest = std::max(largest, (h + 8 * u * (h + target(at.packing, contact))) * (1 + 4 * u));
+    }
+    return largest;
+}
 
 /// Makes the claims one after the other; what one needs of those before it is checked where it is used.
 class Prover {
@@ -117,7 +130,7 @@ class Prover {
     void claim_other_counts();
     bool put_on_grid();
     bool prove_vertex();
-    [[nodiscard]] std::unique_ptr<Centre> downhill() const;
+    [[nodiscard]] std::unique_ptr<ProvedStructure> downhill() const;
     bool prove_forces();
     ForceSigns look_at(const std::vector<Interval>& finite, SignFailures& failures) const;
     void look_at_zeros(ForcesClaim& claim, SignFailures& failures) const;
@@ -134,10 +147,10 @@ class Prover {
     CertifyOptions options_;
     const ProvedStructure* proved_; ///< null: nothing was proved before
     Certification result_;
-    std::unique_ptr<Centre> stored_; ///< at the stored coordinates; in a cell, these on the grid
-    double rounded_away_ = 0;        ///< what that changed of a gap, at most
-    std::unique_ptr<Centre> moved_;  ///< at the end of a Newton iteration, when that is wanted
-    const Centre* centre_ = nullptr; ///< one of them
+    std::unique_ptr<ProvedStructure> stored_; ///< at the stored coordinates; in a cell, these on the grid
+    double rounded_away_ = 0;                 ///< what that changed of a gap, at most
+    std::unique_ptr<ProvedStructure> moved_;  ///< at the end of a Newton iteration, when that is wanted
+    const ProvedStructure* centre_ = nullptr; ///< one of them
     std::unique_ptr<Subject> subject_;
     std::unique_ptr<TrueVertex> vertex_;
 };
@@ -170,11 +183,11 @@ bool Prover::prove_counting() {
         return false;
     }
     if (proved_ != nullptr) {
-        stored_ = Centre::of(*proved_);
+        stored_ = proved_->shared();
         return claim_regular(count);
     }
     if (dof_count == count) {
-        auto made = Centre::make(state_.packing, state_.contacts);
+        auto made = ProvedStructure::make(state_.packing, state_.contacts);
         if (made.ok()) {
             stored_ = std::move(made.value());
             return claim_regular(count);
@@ -309,25 +322,27 @@ bool Prover::put_on_grid() {
 }
 
 /// Where the gaps are visibly open, the stored place says less than the end of Newton's method. Either will do.
-std::unique_ptr<Centre> Prover::downhill() const {
+std::unique_ptr<ProvedStructure> Prover::downhill() const {
     constexpr double visible = 1e-10; // guess: when a centre is sought by Newton
     constexpr double reach = 0.1;     // of the smallest radius; guess: the centre may be any doubles (true_vertex.md)
     Packing end = stored_->packing;
     end.cell.keeps_shape = false; // only the period that moves was asked about
     long steps = 0;
-    if (stored_->relative_gap < visible || to_vertex(end, state_.contacts, steps, reach * end.min_radius())) {
+    if (worst_gap_ratio(stored_->packing, stored_->structure.contacts()) < visible ||
+        to_vertex(end, state_.contacts, steps, reach * end.min_radius())) {
         return nullptr;
     }
     end.cell = stored_->packing.cell;
     double moved = 0;
     const auto snapped = end.cell.any() ? on_grid(end, state_.contacts, moved) : std::optional(end);
-    auto made = snapped ? Centre::make(*snapped, state_.contacts) : Failure{FailureKind::undecided, "off the grid"};
+    auto made =
+        snapped ? ProvedStructure::make(*snapped, state_.contacts) : Failure{FailureKind::undecided, "off the grid"};
     return made.ok() ? std::move(made.value()) : nullptr;
 }
 
 bool Prover::prove_vertex() {
     centre_ = stored_.get();
-    result_.stored_gap = centre_->largest_gap + rounded_away_;
+    result_.stored_gap = largest_gap(*centre_) + rounded_away_;
     subject_ = std::make_unique<Subject>(state_, stored_->structure);
     if (centre_->inverse.verdict != Verdict::proved) {
         absent_from_vertex_on("no bound of the inverse of the contact matrix was found");

@@ -3,7 +3,7 @@
 /// What one rung of arithmetic knows of the true vertex.
 
 #include "certificate/subject.hpp"
-#include "verified/centre.hpp"
+#include "verified/proved_structure.hpp"
 
 #include <isostat/io/state_file.hpp>
 
@@ -47,8 +47,8 @@ class TrueVertex {
 };
 
 /// The rungs, in the order in which they are tried. The arguments must outlive the result.
-std::unique_ptr<TrueVertex> in_double(const Subject& subject, const Centre& centre);
-std::unique_ptr<TrueVertex> in_double_double(const Subject& subject, const Centre& centre);
-std::unique_ptr<TrueVertex> in_multiprecision(const Subject& subject, const Centre& centre);
+std::unique_ptr<TrueVertex> in_double(const Subject& subject, const ProvedStructure& centre);
+std::unique_ptr<TrueVertex> in_double_double(const Subject& subject, const ProvedStructure& centre);
+std::unique_ptr<TrueVertex> in_multiprecision(const Subject& subject, const ProvedStructure& centre);
 
 } // namespace isostat

@@ -17,9 +17,10 @@ namespace isostat {
 
 template <class T> class TrueVertexAt final : public TrueVertex {
   public:
-    TrueVertexAt(const Subject& subject, const Centre& centre, const Arithmetic<T>& arithmetic)
+    TrueVertexAt(const Subject& subject, const ProvedStructure& centre, const Arithmetic<T>& arithmetic)
         : subject_(subject), centre_(centre),
-          vertex_(arithmetic, centre.packing, centre.structure, centre.factorisation, centre.neighbourhood) {
+          vertex_(arithmetic, centre.packing, centre.structure, centre.factorisation,
+                  Neighbourhood::of(centre.packing, centre.structure.contacts(), centre.inverse)) {
         if (vertex_.exists()) {
             claim_radii();
             system_.emplace(vertex_, centre.structure, centre.factorisation);
@@ -90,7 +91,7 @@ template <class T> class TrueVertexAt final : public TrueVertex {
     std::vector<Interval> around(const Solution& solution) const;
 
     const Subject& subject_;
-    const Centre& centre_;
+    const ProvedStructure& centre_;
     EnclosedVertex<T> vertex_;
     std::optional<ContactSystem<T>> system_;
     bool exists_ = false;

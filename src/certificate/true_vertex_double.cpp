@@ -3,7 +3,7 @@
 
 namespace isostat {
 
-std::unique_ptr<TrueVertex> in_double(const Subject& subject, const Centre& centre) {
+std::unique_ptr<TrueVertex> in_double(const Subject& subject, const ProvedStructure& centre) {
     return std::make_unique<TrueVertexAt<double>>(subject, centre, Arithmetic<double>());
 }
 

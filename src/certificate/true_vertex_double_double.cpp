@@ -3,7 +3,7 @@
 
 namespace isostat {
 
-std::unique_ptr<TrueVertex> in_double_double(const Subject& subject, const Centre& centre) {
+std::unique_ptr<TrueVertex> in_double_double(const Subject& subject, const ProvedStructure& centre) {
     return std::make_unique<TrueVertexAt<dd_real>>(subject, centre, Arithmetic<dd_real>());
 }
 

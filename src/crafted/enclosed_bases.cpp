@@ -5,8 +5,8 @@
 #include "core/roundoff.hpp"
 #include "io/json.hpp"
 #include "rigidity/isostatic.hpp"
-#include "verified/centre.hpp"
 #include "verified/force_solution.hpp"
+#include "verified/proved_structure.hpp"
 
 #include <fmt/format.h>
 
@@ -71,12 +71,12 @@ class Encloser {
         for (const int dof : out.free_dofs) {
             kept.push_back({ContactKind::held, dofs.coordinate_of(dof), 0});
         }
-        const auto made = Centre::make(stored_, kept);
+        const auto made = ProvedStructure::make(stored_, kept);
         if (!made.ok() || made.value()->inverse.verdict != Verdict::proved ||
             !(made.value()->inverse.sigma_min > 2 * change_)) {
             return out;
         }
-        const Centre& at = *made.value();
+        const ProvedStructure& at = *made.value();
         sigma_ = (at.inverse.sigma_min - change_) / upwards; // of the exact matrix
         out.verdict = Verdict::proved;
         for (int k = 0; k < count && k < static_cast<int>(out.free_contacts.size()); ++k) {
@@ -101,7 +101,8 @@ class Encloser {
   private:
     /// Forces of the independent contacts that balance a unit force in the free contact; the multipliers of the held
     /// degrees of freedom are 0 because the column of the free contact depends on the others (the rank is proved).
-    [[nodiscard]] EnclosedVector self_stress(const Centre& at, const std::vector<int>& columns, int free) const {
+    [[nodiscard]] EnclosedVector self_stress(const ProvedStructure& at, const std::vector<int>& columns,
+                                             int free) const {
         const IsostaticStructure& structure = at.structure;
         const auto l = static_cast<std::size_t>(free);
         std::vector<double> right(static_cast<std::size_t>(structure.size()), 0.0);
@@ -124,7 +125,7 @@ class Encloser {
     }
 
     /// Velocity that keeps all gaps constant and is 1 in the held degree of freedom number `row` of the structure.
-    [[nodiscard]] EnclosedVector motion(const Centre& at, std::size_t row, int free) const {
+    [[nodiscard]] EnclosedVector motion(const ProvedStructure& at, std::size_t row, int free) const {
         std::vector<double> v(static_cast<std::size_t>(at.structure.size()), 0.0);
         v[row] = -1; // approach velocities: the column of a held coordinate is -1
         at.factorisation.solve_velocities(v);

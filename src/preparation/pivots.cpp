@@ -37,7 +37,7 @@ double value_of(const Enclosure& x, Signs signs) {
 /// One basis: sorted contacts, and a configuration at which their gaps are 0 to rounding.
 class Basis {
   public:
-    Basis(const Centre& at, const Load& load, Signs signs)
+    Basis(const ProvedStructure& at, const Load& load, Signs signs)
         : at_(at), load_(final_load(load, at.packing)),
           vertex_(enclose_vertex_double_double(at.packing, at.structure, at.factorisation, at.inverse)),
           statics_(at.packing, load_, at.structure, at.factorisation, at.inverse) {
@@ -132,7 +132,7 @@ class Basis {
         return load;
     }
 
-    const Centre& at_;
+    const ProvedStructure& at_;
     Load load_;
     VertexEnclosure vertex_;
     Statics statics_;

@@ -18,7 +18,7 @@ namespace isostat::preparation {
 namespace {
 
 /// The smallest gap of the other candidates at the true vertex when all are proved positive, else a failure naming one.
-Result<double> check_other_gaps(const Centre& at, VertexEnclosure vertex) {
+Result<double> check_other_gaps(const ProvedStructure& at, VertexEnclosure vertex) {
     const Packing& packing = at.packing;
     const std::vector<Contact>& contacts = at.structure.contacts();
     std::vector<Contact> others =
@@ -53,7 +53,7 @@ Result<double> check_other_gaps(const Centre& at, VertexEnclosure vertex) {
 }
 
 /// The true vertex near a packing, with as many digits as the proof requires.
-Result<VertexEnclosure> enclosed(const Centre& at) {
+Result<VertexEnclosure> enclosed(const ProvedStructure& at) {
     if (at.inverse.verdict != Verdict::proved) {
         return Failure{FailureKind::undecided,
                        "no bound of the inverse of the contact matrix was proved in double precision"};
@@ -109,13 +109,13 @@ Result<double> smallest_force(Statics& statics, double sigma) {
 
 } // namespace
 
-Result<std::unique_ptr<Centre>> centre_at_vertex(Packing& packing, const std::vector<Contact>& contacts,
-                                                 long& iterations) {
+Result<std::unique_ptr<ProvedStructure>> centre_at_vertex(Packing& packing, const std::vector<Contact>& contacts,
+                                                          long& iterations) {
     if (auto failure = to_vertex(packing, contacts, iterations)) {
         return *failure;
     }
     snap_to_grid(packing);
-    return Centre::make(packing, contacts);
+    return ProvedStructure::make(packing, contacts);
 }
 
 Result<Polished> polish(Packing packing, std::vector<Contact> contacts, Load load, long& iterations) {
@@ -124,7 +124,7 @@ Result<Polished> polish(Packing packing, std::vector<Contact> contacts, Load loa
     if (!made.ok()) {
         return made.failure();
     }
-    const Centre& at = *made.value();
+    const ProvedStructure& at = *made.value();
     const auto vertex = enclosed(at);
     if (!vertex.ok()) {
         return vertex.failure();

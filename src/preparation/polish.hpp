@@ -3,7 +3,7 @@
 /// From the contacts of a linear programme to a proved vertex, by the last pivots if need be, in which signs have no
 /// tolerances; or the reason why the contacts give none.
 
-#include "verified/centre.hpp"
+#include "verified/proved_structure.hpp"
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
@@ -36,8 +36,8 @@ struct Polished {
 Result<Polished> polish(Packing packing, std::vector<Contact> contacts, Load load, long& iterations);
 
 /// The bounds at the vertex of the contacts nearest to `packing`, which moves there (`to_vertex`) and to the grid.
-Result<std::unique_ptr<Centre>> centre_at_vertex(Packing& packing, const std::vector<Contact>& contacts,
-                                                 long& iterations);
+Result<std::unique_ptr<ProvedStructure>> centre_at_vertex(Packing& packing, const std::vector<Contact>& contacts,
+                                                          long& iterations);
 
 struct PivotLimits {
     double step = 0; ///< longest displacement of one exchange, beyond which linear gaps are too inaccurate

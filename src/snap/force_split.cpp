@@ -2,7 +2,7 @@
 
 #include "snap/backbone.hpp"
 #include "statics/statics.hpp"
-#include "verified/centre.hpp"
+#include "verified/proved_structure.hpp"
 
 #include <fmt/format.h>
 
@@ -54,11 +54,11 @@ ForceSplit split_forces(const SoftState& soft, const std::vector<double>& forces
     ForceSplit out;
     Packing packing = of_disks(soft.packing, snap.disks);
     (void)snap_to_grid(packing);
-    const auto made = Centre::make(std::move(packing), snap.backbone.contacts);
+    const auto made = ProvedStructure::make(std::move(packing), snap.backbone.contacts);
     if (!made.ok() || !(mean > 0)) {
         return out;
     }
-    const Centre& at = *made.value();
+    const ProvedStructure& at = *made.value();
     const Load& load = snap.backbone.load;
     const Statics statics(at.packing, load, at.structure, at.factorisation, at.inverse);
     const double factor = factor_of(at.packing, statics, load, forces);

@@ -2,9 +2,9 @@
 #include "rigidity/isostatic.hpp"
 #include "snap/backbone.hpp"
 #include "snap/force_split.hpp"
-#include "verified/centre.hpp"
 #include "verified/force_solution.hpp"
 #include "verified/norm.hpp"
+#include "verified/proved_structure.hpp"
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
@@ -102,11 +102,11 @@ std::optional<Balanced> balanced(const Surplus& surplus, const Packing& packing,
             terms[entry.row()] += 1;
         }
     }
-    const auto made = Centre::make(packing, others);
+    const auto made = ProvedStructure::make(packing, others);
     if (!made.ok() || made.value()->inverse.verdict != Verdict::proved) {
         return std::nullopt;
     }
-    const Centre& at = *made.value();
+    const ProvedStructure& at = *made.value();
     const ForceSolution solved =
         solve_forces(at.structure, at.factorisation, at.inverse, std::vector<double>(rest.begin(), rest.end()));
     for (std::size_t k = 0; k < places.size(); ++k) {

@@ -3,7 +3,6 @@
 #include "packing/arc_bodies.hpp"
 #include "trajectory/rearrangement.hpp"
 #include "trajectory/steering.hpp"
-#include "verified/centre.hpp"
 
 #include <isostat/core/machine.hpp>
 #include <isostat/core/result.hpp>
@@ -399,8 +398,7 @@ std::optional<Failure> Run::report(int arcs, std::optional<Result<Description>> 
     record_ = record;
     state_.equilibrium = counters_.equilibria;
     counters_.seconds = elapsed();
-    const ProvedStructure proved{vertex_->packing, vertex_->structure, vertex_->factorisation, vertex_->inverse};
-    recorder_.observer.on_structure(proved);
+    recorder_.observer.on_structure(*vertex_);
     recorder_.observer.on_equilibrium(record, state_, finite_forces(*vertex_, state_.load));
     return recorder_.observer.objection();
 }

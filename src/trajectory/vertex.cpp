@@ -9,16 +9,9 @@
 
 namespace isostat {
 
-Vertex::Vertex(Packing p, RankProof& proof, Factorisation factors, const Load& load, InverseBoundCache& cache,
-               LadderOptions options)
-    : packing(std::move(p)), structure(proof.unproved()), factorisation(std::move(factors)),
-      inverse(bound_inverse(structure, factorisation, cache, [&] { return proof.is_regular(); })),
-      enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
-      statics(packing, load, structure, factorisation, inverse, {options, &enclosure}), ladder(options) {}
-
-Vertex::Vertex(Packing p, IsostaticStructure s, ApproximateInverse approximate, const InverseBound& bound,
-               const Load& load, StaticsHints hints)
-    : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)), inverse(bound),
+Vertex::Vertex(Packing p, IsostaticStructure s, Factorisation factors, const InverseBound& bound, const Load& load,
+               StaticsHints hints)
+    : ProvedStructure(std::move(p), std::move(s), std::move(factors), bound),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
       statics(packing, load, structure, factorisation, inverse,
               {hints.ladder, &enclosure, hints.near, std::move(hints.forces)}),
@@ -90,8 +83,10 @@ Result<std::unique_ptr<Vertex>> Vertex::make(Packing packing, std::vector<Contac
 Result<std::unique_ptr<Vertex>> Vertex::make(Beginning beginning, const Load& load, InverseBoundCache& cache,
                                              LadderOptions options) {
     RankProof& rank = beginning.rank;
-    std::unique_ptr<Vertex> vertex(
-        new Vertex(std::move(beginning.packing), rank, std::move(beginning.factorisation), load, cache, options));
+    const InverseBound bound =
+        bound_inverse(rank.unproved(), beginning.factorisation, cache, [&] { return rank.is_regular(); });
+    std::unique_ptr<Vertex> vertex(new Vertex(std::move(beginning.packing), rank.unproved(),
+                                              std::move(beginning.factorisation), bound, load, {options}));
     auto proved = rank.conclude();
     if (!proved.ok()) {
         return proved.failure();
@@ -135,9 +130,10 @@ Result<std::unique_ptr<Vertex>> Vertex::prove(const Vertex& from, Exchange& to, 
     if (!bound) {
         return std::unique_ptr<Vertex>();
     }
-    std::unique_ptr<Vertex> vertex(new Vertex(
-        std::move(to.end), IsostaticStructure::exchanged(std::move(*to.contacts), bound->proof),
-        std::move(*to.approximate), bound->bound, load, {options, nullptr, &from.statics, std::move(to.forces)}));
+    auto structure = IsostaticStructure::exchanged(std::move(*to.contacts), bound->proof);
+    Factorisation factors(structure, std::move(*to.approximate));
+    std::unique_ptr<Vertex> vertex(new Vertex(std::move(to.end), std::move(structure), std::move(factors), bound->bound,
+                                              load, {options, nullptr, &from.statics, std::move(to.forces)}));
     vertex->cost_before = to.cost_before;
     if (auto failure = vertex->lacking()) {
         return *failure;

@@ -9,6 +9,7 @@
 #include "statics/perturbed.hpp"
 #include "trajectory/kept_candidates.hpp"
 #include "verified/configuration.hpp"
+#include "verified/proved_structure.hpp"
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
@@ -53,9 +54,8 @@ struct Exchange {
     double cost_before = 0;                          ///< see `Vertex`
 };
 
-/// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable:
-/// the parts refer to each other.
-class Vertex {
+/// A proved structure with the true vertex near it and its statics. Not movable: the parts refer to each other.
+class Vertex : public ProvedStructure {
   public:
     /// Proves the rank, factorises, bounds the inverse, solves the statics and encloses the true vertex.
     /// Failures: `not_isostatic`; `undecided` when no bound of the inverse or no true vertex
@@ -76,13 +76,7 @@ class Vertex {
     /// (V1), everything anew as in `make`.
     static Result<std::unique_ptr<Vertex>> exchanged(const Vertex& from, Exchange to, const Load& load,
                                                      InverseBoundCache& cache, LadderOptions options);
-    Vertex(const Vertex&) = delete;
-    Vertex& operator=(const Vertex&) = delete;
 
-    Packing packing;
-    IsostaticStructure structure;
-    Factorisation factorisation;
-    InverseBound inverse;
     VertexEnclosure enclosure;
     Statics statics;
     LadderOptions ladder;   ///< precisions for signs that must climb
@@ -108,10 +102,8 @@ class Vertex {
     [[nodiscard]] PerturbedStatics* first_order() { return perturbed ? &perturbed->statics : nullptr; }
 
   private:
-    /// The vertex counts as proved only after `RankProof` is concluded.
-    Vertex(Packing p, RankProof& proof, Factorisation factors, const Load& load, InverseBoundCache& cache,
-           LadderOptions options);
-    Vertex(Packing p, IsostaticStructure s, ApproximateInverse approximate, const InverseBound& bound, const Load& load,
+    /// Of a structure whose rank is being proved, the vertex counts as proved only after `RankProof` is concluded.
+    Vertex(Packing p, IsostaticStructure s, Factorisation factors, const InverseBound& bound, const Load& load,
            StaticsHints hints);
     static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, Exchange& to, const Load& load,
                                                  InverseBoundCache& cache, LadderOptions options);

@@ -172,7 +172,7 @@ struct Tally {
 };
 
 struct Segment;
-struct ProvedStructure;
+class ProvedStructure;
 
 /// Receives the records of a run as they are made. Each call returns before the run goes on, so a killed run has
 /// written everything that it had found. After each equilibrium the run asks for an objection, which ends the run.

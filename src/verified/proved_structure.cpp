@@ -1,6 +1,7 @@
-#include "verified/centre.hpp"
+#include "verified/proved_structure.hpp"
 
 #include "core/roundoff.hpp"
+#include "verified/enclosed_vertex.hpp"
 #include "verified/regularity_prover.hpp"
 
 #include <algorithm>
@@ -16,20 +17,10 @@ bool ProvedStructure::is_of(const Packing& other, const std::vector<Contact>& co
            inverse.route != InverseBound::Route::multiprecision && structure.contacts() == contacts && packing == other;
 }
 
-Centre::Centre(Packing p, IsostaticStructure s, Factorisation factors, const InverseBound& bound)
-    : packing(std::move(p)), structure(std::move(s)), factorisation(std::move(factors)), inverse(bound) {
-    for (const Contact& contact : structure.contacts()) {
-        const double h = std::abs(gap(packing, contact));
-        const double length = target(packing, contact);
-        // 8: bounds.md V4 (a), rounding of K, and of a gap; 4: bounds.md V4 (b), three roundings, and two of the
-        // largest gap
-        largest_gap = std::max(largest_gap, (h + 8 * u * (h + length)) * (1 + 4 * u));
-        relative_gap = std::max(relative_gap, h / length);
-    }
-    neighbourhood = Neighbourhood::of(packing, structure.contacts(), inverse);
-}
+ProvedStructure::ProvedStructure(Packing p, IsostaticStructure s, Factorisation factors, const InverseBound& bound)
+    : packing(std::move(p)), structure(std::move(s)), factorisation(std::move(factors)), inverse(bound) {}
 
-Result<std::unique_ptr<Centre>> Centre::make(Packing packing, std::vector<Contact> contacts) {
+Result<std::unique_ptr<ProvedStructure>> ProvedStructure::make(Packing packing, std::vector<Contact> contacts) {
     auto proved = IsostaticStructure::prove(packing, std::move(contacts));
     if (!proved.ok()) {
         return proved.failure();
@@ -37,25 +28,26 @@ Result<std::unique_ptr<Centre>> Centre::make(Packing packing, std::vector<Contac
     InverseBoundCache cache;
     Factorisation factors(proved.value());
     const InverseBound bound = bound_inverse(proved.value(), factors, cache);
-    return std::unique_ptr<Centre>(
-        new Centre(std::move(packing), std::move(proved.value()), std::move(factors), bound));
+    return std::unique_ptr<ProvedStructure>(
+        new ProvedStructure(std::move(packing), std::move(proved.value()), std::move(factors), bound));
 }
 
-std::unique_ptr<Centre> Centre::of(const ProvedStructure& proved) {
-    return std::unique_ptr<Centre>(
-        new Centre(proved.packing, proved.structure, proved.factorisation.shared(), proved.inverse));
+std::unique_ptr<ProvedStructure> ProvedStructure::shared() const {
+    return std::unique_ptr<ProvedStructure>(new ProvedStructure(packing, structure, factorisation.shared(), inverse));
 }
 
-Result<std::unique_ptr<Centre>> Centre::moved(Packing there, double farthest) const {
+Result<std::unique_ptr<ProvedStructure>> ProvedStructure::moved(Packing there, double farthest) const {
     // true_vertex.md V5 (roundings of a distance)
     const double distance = std::sqrt(static_cast<double>(there.q.size())) * farthest * (1 + 4 * u);
+    const double gaps = worst_gap_ratio(packing, structure.contacts());
+    const double turning = lipschitz(packing, structure.contacts());
     InverseBound bound = inverse;
     // bounds.md V4 (b), three roundings, and two of the largest gap
-    bound.sigma_min -= normal_rate(neighbourhood.lipschitz) * distance * (1 + 4 * u);
+    bound.sigma_min -= normal_rate(turning) * distance * (1 + 4 * u);
     bound.sigma_min *= 1 - 2 * u;
     // true_vertex.md V5 (a centre that was moved)
-    const bool near = relative_gap < 1e-3 && distance * neighbourhood.lipschitz < 1e-3; // then distance < D_min / 1000
-    const ContactId any(0);                                                             // nothing is exchanged
+    const bool near = gaps < 1e-3 && distance * turning < 1e-3; // then distance < D_min / 1000
+    const ContactId any(0);                                     // nothing is exchanged
     auto same = near && bound.sigma_min > inverse.sigma_min / 2
                     ? IsostaticStructure::exchange(structure, there, any, structure.contacts().front())
                     : std::nullopt;
@@ -66,7 +58,8 @@ Result<std::unique_ptr<Centre>> Centre::moved(Packing there, double farthest) co
     IsostaticStructure proved = IsostaticStructure::exchanged(std::move(*same), proof);
     // One pass errs by K distance / sigma_min at most, and whoever solves here refines with residuals at this place.
     Factorisation factors = Factorisation::of(proved, factorisation.approximate());
-    return std::unique_ptr<Centre>(new Centre(std::move(there), std::move(proved), std::move(factors), bound));
+    return std::unique_ptr<ProvedStructure>(
+        new ProvedStructure(std::move(there), std::move(proved), std::move(factors), bound));
 }
 
 } // namespace isostat

@@ -1,6 +1,6 @@
 #include "answers/true_vertex.hpp"
 
-#include "contact/names.hpp"
+#include "contact/words.hpp"
 #include "core/decimal.hpp"
 #include "io/text.hpp"
 

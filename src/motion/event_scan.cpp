@@ -1,6 +1,6 @@
 #include "motion/event_scan.hpp"
 
-#include "contact/cell_drift.hpp"
+#include "contact/candidates.hpp"
 #include "contact/contact_set.hpp"
 #include "core/dot.hpp"
 #include "core/roundoff.hpp"

@@ -1,5 +1,4 @@
-#include "certificate/smallest_singular_values.hpp"
-
+#include "certificate/averages.hpp"
 #include "linear/factorisation.hpp"
 
 #include <Eigen/Dense>

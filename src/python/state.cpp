@@ -1,5 +1,5 @@
 // Binds State and Packing, whose arrays view the library's memory.
-#include "certificate/contact_table.hpp"
+#include "certificate/averages.hpp"
 #include "checker/run_records.hpp"
 #include "contact/words.hpp"
 #include "convert.hpp"

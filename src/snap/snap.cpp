@@ -1,4 +1,4 @@
-#include "certificate/subject.hpp"
+#include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
 #include "contact/contact_set.hpp"
 #include "crafted/peeling.hpp"

@@ -1,6 +1,6 @@
 #include "trajectory/bounded_steering.hpp"
 
-#include "motion/precise_end.hpp"
+#include "motion/arc.hpp"
 #include "trajectory/prover.hpp"
 #include "trajectory/record.hpp"
 

@@ -1,7 +1,7 @@
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
 #include "contact/contact_set.hpp"
-#include "crafted/peeling.hpp"
+#include "crafted/able.hpp"
 #include "rigidity/isostatic.hpp"
 #include "snap/backbone.hpp"
 #include "verified/to_vertex.hpp"

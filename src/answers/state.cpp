@@ -1,6 +1,5 @@
 #include "answers/state.hpp"
 
-#include "answers/true_vertex.hpp"
 #include "certificate/averages.hpp"
 #include "core/decimal.hpp"
 #include "io/text.hpp"

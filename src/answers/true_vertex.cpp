@@ -1,5 +1,4 @@
-#include "answers/true_vertex.hpp"
-
+#include "answers/state.hpp"
 #include "contact/words.hpp"
 #include "core/decimal.hpp"
 #include "io/text.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Solves with a contact matrix that was proved regular.
+/// Solves with a contact matrix that was proved regular; a structure with its factors.
 
 #include "linear/approximate_inverse.hpp"
 #include "rigidity/isostatic.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// One arc: open a contact, keep the others, follow the mechanism to the first event.
+/// One arc: open a contact, keep the others, follow the mechanism to the first event; its end where the contacts are
+/// nearly singular.
 
 #include "contact/candidates.hpp"
 #include "linear/factorisation.hpp"

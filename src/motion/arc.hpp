@@ -31,11 +31,11 @@ struct ArcOptions {
     bool precisely = false;
     std::optional<Contact> closes; ///< ends the arc: the caller proved that this contact closes earlier
     /// Pairs that touch at the start without being contacts: `leaving` are proved to separate at once (as the opened
-    /// contact does), `resting` are proved to keep their distance all along, `taken_to_rest` are only assumed to keep
-    /// it, or to graze later: they are checked at the end of each step.
+    /// contact does), `kept_touching` are proved to keep their distance all along, `assumed_touching` are only assumed
+    /// to keep it, or to graze later: they are checked at the end of each step.
     std::vector<Contact> leaving;
-    std::vector<Contact> resting;
-    std::vector<Contact> taken_to_rest;
+    std::vector<Contact> kept_touching;
+    std::vector<Contact> assumed_touching;
 };
 
 /// The start of an arc: a structure made at the packing, with factors that solve accurately for it. The gap of `opened`

@@ -1,6 +1,6 @@
 #include "answers/genericity.hpp"
 
-#include "contact/names.hpp"
+#include "contact/words.hpp"
 #include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/text.hpp"

@@ -1,7 +1,7 @@
 #include "answers/plateau.hpp"
 
 #include "answers/state.hpp"
-#include "contact/names.hpp"
+#include "contact/words.hpp"
 #include "core/decimal.hpp"
 #include "io/text.hpp"
 #include "packing/bodies.hpp"

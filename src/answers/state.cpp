@@ -1,8 +1,6 @@
 #include "answers/state.hpp"
 
-#include "answers/true_vertex.hpp"
 #include "certificate/averages.hpp"
-#include "certificate/smallest_singular_values.hpp"
 #include "core/decimal.hpp"
 #include "io/text.hpp"
 #include "packing/bodies.hpp"

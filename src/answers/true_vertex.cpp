@@ -1,6 +1,5 @@
-#include "answers/true_vertex.hpp"
-
-#include "contact/names.hpp"
+#include "answers/state.hpp"
+#include "contact/words.hpp"
 #include "core/decimal.hpp"
 #include "io/text.hpp"
 

@@ -1,6 +1,5 @@
 #include "certificate/averages.hpp"
 
-#include "certificate/contact_table.hpp"
 #include "contact/separation.hpp"
 #include "packing/bodies.hpp"
 

@@ -1,6 +1,4 @@
-#include "certificate/exact_counting.hpp"
-#include "certificate/finite_forces.hpp"
-#include "certificate/reach.hpp"
+#include "certificate/parts.hpp"
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
 #include "contact/images.hpp"

@@ -1,5 +1,4 @@
-#include "certificate/contact_table.hpp"
-
+#include "certificate/averages.hpp"
 #include "contact/separation.hpp"
 #include "packing/words.hpp"
 

@@ -1,5 +1,4 @@
-#include "certificate/exact_counting.hpp"
-
+#include "certificate/parts.hpp"
 #include "contact/separation.hpp"
 
 #include <isostat/exact/number.hpp>

@@ -1,6 +1,6 @@
 #include "certificate/held_minimum.hpp"
 
-#include "certificate/reach.hpp"
+#include "certificate/parts.hpp"
 #include "contact/separation.hpp"
 #include "core/dot.hpp"
 #include "core/roundoff.hpp"

@@ -1,5 +1,5 @@
-#include "certificate/finite_forces.hpp"
 #include "certificate/jammed_box.hpp"
+#include "certificate/parts.hpp"
 #include "contact/contact_set.hpp"
 #include "contact/other_pairs.hpp"
 

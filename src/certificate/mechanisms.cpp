@@ -1,5 +1,5 @@
 #include "certificate/held_minimum.hpp"
-#include "certificate/reach.hpp"
+#include "certificate/parts.hpp"
 #include "contact/other_pairs.hpp"
 #include "core/decimal.hpp"
 #include "core/roundoff.hpp"

@@ -1,5 +1,4 @@
-#include "certificate/reach.hpp"
-
+#include "certificate/parts.hpp"
 #include "contact/images.hpp"
 #include "core/roundoff.hpp"
 

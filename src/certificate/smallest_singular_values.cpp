@@ -1,5 +1,4 @@
-#include "certificate/smallest_singular_values.hpp"
-
+#include "certificate/averages.hpp"
 #include "linear/factorisation.hpp"
 
 #include <Eigen/Dense>
@@ -11,10 +10,10 @@ namespace isostat {
 
 std::vector<double> smallest_singular_values(const IsostaticStructure& structure, int count) {
     // guess: values for people, not proved
-    constexpr int beside = 10;           // further vectors: the wanted ones converge as the ratio to theirs
+    constexpr int further = 10;          // vectors: the wanted ones converge as the ratio to theirs
     constexpr int most_iterations = 200; // cost: of iterations
     const Eigen::Index size = structure.size();
-    const int width = static_cast<int>(std::min<Eigen::Index>(size, count + beside));
+    const int width = static_cast<int>(std::min<Eigen::Index>(size, count + further));
     const Eigen::Index wanted = std::min(count, width);
     const Factorisation factors(structure);
     std::srand(1); // of Eigen's random start: the same answer on every run

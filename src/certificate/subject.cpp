@@ -1,4 +1,4 @@
-#include "certificate/subject.hpp"
+#include "certificate/true_vertex.hpp"
 
 namespace isostat {
 

@@ -5,7 +5,7 @@
 
 #include "certificate/true_vertex.hpp"
 #include "core/roundoff.hpp"
-#include "statics/first_to_vanish.hpp"
+#include "statics/quotient.hpp"
 #include "verified/contact_system.hpp"
 
 #include <fmt/format.h>

@@ -50,4 +50,9 @@ class FirstOrder {
     Velocities::Solution change_;
 };
 
+/// First-order term of the stress at which the force of a contact vanishes, from the first-order term of the force.
+inline Range limit_rate(const Range& first, const Range& slope) {
+    return -(first / slope);
+}
+
 } // namespace isostat::checker

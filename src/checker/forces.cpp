@@ -1,6 +1,6 @@
 #include "checker/forces.hpp"
 
-#include "checker/index.hpp"
+#include "core/index.hpp"
 
 #include <bit>
 #include <optional>

@@ -7,7 +7,10 @@
 
 #include <isostat/packing/load.hpp>
 
+#include <algorithm>
 #include <map>
+#include <optional>
+#include <vector>
 
 namespace isostat::checker {
 
@@ -89,5 +92,15 @@ bool vanish_structurally(const Problem& problem, const std::vector<int>& contact
 /// The forces of these contacts are fixed multiples of one number under every load that vanishes where `load` does
 /// (K8). False proves nothing.
 bool vary_together(const Problem& problem, const std::vector<int>& contacts, const Forces& load);
+
+/// All contacts whose forces are exactly 0, by the pattern alone, for every load that
+/// vanishes where `load` does and for all radii (K7; no entry is left out,
+/// proofs/definition.md). Ascending; nothing when the pattern has no perfect matching.
+std::optional<std::vector<int>> structural_zeros(const Problem& problem, const Forces& load);
+
+/// Whether a number is among those that `structural_zeros` returned.
+inline bool contains(const std::vector<int>& sorted, std::size_t value) {
+    return std::binary_search(sorted.begin(), sorted.end(), static_cast<int>(value));
+}
 
 } // namespace isostat::checker

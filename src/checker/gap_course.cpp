@@ -1,7 +1,6 @@
-#include "checker/gap_course.hpp"
-
+#include "checker/courses.hpp"
 #include "checker/images.hpp"
-#include "checker/index.hpp"
+#include "core/index.hpp"
 
 #include <fmt/format.h>
 

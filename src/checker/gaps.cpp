@@ -1,7 +1,6 @@
-#include "checker/gaps.hpp"
-
 #include "checker/arcs.hpp"
 #include "checker/images.hpp"
+#include "checker/vertex.hpp"
 
 #include <algorithm>
 #include <numeric>

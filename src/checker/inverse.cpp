@@ -1,7 +1,6 @@
 #include "checker/inverse.hpp"
 
 #include "checker/elimination.hpp"
-#include "checker/singular_value.hpp"
 #include "checker/wide.hpp"
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What is proved of the inverse of the derivative at the stored coordinates (proofs/checker.md, K2, K3, K15).
+/// What is proved of the derivative at the stored coordinates and of its inverse (proofs/checker.md, K2, K3, K15).
 
 #include "checker/problem.hpp"
 #include "checker/solver.hpp"
@@ -12,6 +12,17 @@
 #include <vector>
 
 namespace isostat::checker {
+
+/// An order of the degrees of freedom in which a Cholesky factor of A^T A fills little.
+std::vector<int> order_of_normal(const Structure& structure);
+
+/// A positive lower bound, as a length, of the smallest singular value of A; nothing when the factor is not accurate
+/// enough, which proves nothing about the matrix. `order`: one in which factors are computed, for instance that of
+/// nearly the same contacts. `enough`: a bound that does, in units of a power of two just above the entries of A; it
+/// costs one sparse factorisation of A^T A where it holds. 0, or where it does not: two and more for nearly the largest
+/// bound. \pre the problem is square.
+std::optional<Rational> smallest_singular_value(const Problem& problem, const std::vector<int>& order = {},
+                                                double enough = 0);
 
 /// Bounds for a matrix R, which is not kept: row sums, column sums, and the size of E = I - R A. Lengths are real. With
 /// a bound of the smallest singular value R is the inverse, and the sums follow from that bound (K15).

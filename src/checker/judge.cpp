@@ -2,7 +2,7 @@
 // and about the load have their own files.
 #include "checker/arcs.hpp"
 #include "checker/evidence.hpp"
-#include "checker/gaps.hpp"
+#include "checker/vertex.hpp"
 
 #include <fmt/format.h>
 

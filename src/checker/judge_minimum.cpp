@@ -2,9 +2,9 @@
 #include "checker/arcs.hpp"
 #include "checker/bounds.hpp"
 #include "checker/first_order.hpp"
-#include "checker/gaps.hpp"
-#include "checker/index.hpp"
-#include "checker/structural_zeros.hpp"
+#include "checker/forces.hpp"
+#include "checker/vertex.hpp"
+#include "core/index.hpp"
 
 #include <Eigen/Dense>
 #include <fmt/format.h>

@@ -1,11 +1,10 @@
 // The ends of supported intervals: which force vanishes first.
-#include "checker/limit.hpp"
-
 #include "checker/bounds.hpp"
 #include "checker/choice.hpp"
-#include "checker/index.hpp"
-#include "checker/structural_zeros.hpp"
+#include "checker/first_order.hpp"
+#include "checker/forces.hpp"
 #include "checker/strut.hpp"
+#include "core/index.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "checker/logarithm.hpp"
+#include "checker/rational.hpp"
 
 namespace isostat::checker {
 

@@ -1,6 +1,5 @@
-#include "checker/power_course.hpp"
-
-#include "checker/index.hpp"
+#include "checker/courses.hpp"
+#include "core/index.hpp"
 
 #include <utility>
 

@@ -149,4 +149,7 @@ inline Range operator/(const Range& a, const Range& b) {
     return {-short_above(-exact.lower), short_above(exact.upper)};
 }
 
+/// A narrow range that contains ln of all numbers of the range (K27, proofs/checker.md). \pre x.positive()
+Range logarithm(const Range& x);
+
 } // namespace isostat::checker

@@ -1,11 +1,11 @@
 // The vertices of a replay, and the forces that are negative there.
 #include "checker/replay.hpp"
 
-#include "checker/gaps.hpp"
-#include "checker/index.hpp"
-#include "checker/limit.hpp"
-#include "checker/structural_zeros.hpp"
+#include "checker/first_order.hpp"
+#include "checker/forces.hpp"
 #include "checker/strut.hpp"
+#include "checker/vertex.hpp"
+#include "core/index.hpp"
 
 #include <fmt/format.h>
 

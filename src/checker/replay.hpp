@@ -5,8 +5,8 @@
 
 #include "checker/evidence.hpp"
 #include "checker/first_order.hpp"
-#include "checker/gaps.hpp"
 #include "checker/run_records.hpp"
+#include "checker/vertex.hpp"
 
 #include <memory>
 

@@ -1,4 +1,4 @@
-#include "checker/structural_zeros.hpp"
+#include "checker/forces.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include "checker/strut.hpp"
 
-#include "checker/index.hpp"
-#include "checker/structural_zeros.hpp"
+#include "checker/forces.hpp"
+#include "core/index.hpp"
 
 #include <algorithm>
 #include <cmath>

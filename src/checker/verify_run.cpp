@@ -1,5 +1,5 @@
 #include "checker/choice.hpp"
-#include "checker/limit.hpp"
+#include "checker/first_order.hpp"
 #include "checker/lookahead.hpp"
 #include "checker/replay.hpp"
 #include "checker/run_folder.hpp"

@@ -1,8 +1,7 @@
 #include "checker/way.hpp"
 
-#include "checker/gap_course.hpp"
-#include "checker/index.hpp"
-#include "checker/power_course.hpp"
+#include "checker/courses.hpp"
+#include "core/index.hpp"
 
 #include <fmt/format.h>
 

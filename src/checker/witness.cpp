@@ -1,5 +1,4 @@
-#include "checker/witness.hpp"
-
+#include "checker/way.hpp"
 #include "io/json.hpp"
 
 #include <isostat/core/result.hpp>

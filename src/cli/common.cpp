@@ -1,8 +1,8 @@
 #include "cli/common.hpp"
 
 #include "cli/commands.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #include "io/json.hpp"
 
 #include <isostat/core/result.hpp>

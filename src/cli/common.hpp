@@ -4,7 +4,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/terminal.hpp"
-#include "contact/names.hpp"
+#include "contact/words.hpp"
 #include "core/decimal.hpp"
 #include "io/json.hpp"
 

@@ -1,7 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #ifdef ISOSTAT_WITH_MPI
 #include "cli/mpi/sample_queue.hpp"
 #endif

@@ -1,4 +1,4 @@
-#include "answers/true_vertex.hpp"
+#include "answers/state.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"

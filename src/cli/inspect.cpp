@@ -1,5 +1,5 @@
 #include "answers/state.hpp"
-#include "certificate/contact_table.hpp"
+#include "certificate/averages.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "core/refuse.hpp"

@@ -1,4 +1,4 @@
-#include "cli/interrupt.hpp"
+#include "cli/terminal.hpp"
 
 #include <unistd.h>
 

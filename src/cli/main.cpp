@@ -1,6 +1,5 @@
 // The command line: options go into plain structures, and one function per subcommand does the work.
 #include "cli/commands.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/manual.hpp"
 #include "cli/ranges.hpp"
 #include "cli/terminal.hpp"

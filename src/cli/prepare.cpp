@@ -1,6 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/interrupt.hpp"
+#include "cli/terminal.hpp"
 #include "core/refuse.hpp"
 #include "io/files.hpp"
 

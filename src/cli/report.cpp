@@ -2,8 +2,8 @@
 
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #include "core/refuse.hpp"
 #include "ensemble/ensemble.hpp"
 

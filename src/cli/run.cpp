@@ -1,7 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #include "core/refuse.hpp"
 #include "core/work.hpp"
 #include "io/files.hpp"

@@ -1,6 +1,6 @@
 #include "cli/verify.hpp"
 
-#include "cli/interrupt.hpp"
+#include "cli/terminal.hpp"
 #include "ensemble/ensemble.hpp"
 #include "io/files.hpp"
 #include "packing/words.hpp"

@@ -1,6 +1,6 @@
 #include "compare/manifest.hpp"
+#include "io/section.hpp"
 #include "io/text.hpp"
-#include "io/toml.hpp"
 #include "snap/frame_file.hpp"
 
 #include <fmt/format.h>

@@ -3,7 +3,6 @@
 #include "io/files.hpp"
 #include "io/lines.hpp"
 #include "io/section.hpp"
-#include "io/toml.hpp"
 #include "packing/words.hpp"
 
 #include <fmt/format.h>

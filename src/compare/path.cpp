@@ -149,12 +149,12 @@ void NearestArcs::start(const State& equilibrium) {
 void NearestArcs::add(const ArcRecord& arc, int equilibrium) {
     std::erase(contacts_, arc.opened);
     for (Found& found : frames_) {
-        std::vector<Contact> lacking = without(contacts_, found.pressed), beside = without(found.pressed, contacts_);
-        if (found.equilibrium < 0 || lacking.size() + beside.size() < found.lacking.size() + found.beside.size()) {
+        std::vector<Contact> lacking = without(contacts_, found.pressed), extra = without(found.pressed, contacts_);
+        if (found.equilibrium < 0 || lacking.size() + extra.size() < found.lacking.size() + found.extra.size()) {
             found.equilibrium = equilibrium;
             found.arc = arc.arc;
             found.lacking = std::move(lacking);
-            found.beside = std::move(beside);
+            found.extra = std::move(extra);
         }
     }
     if (arc.kind != ArcKind::rattler && !arc.power_turn) {
@@ -164,13 +164,13 @@ void NearestArcs::add(const ArcRecord& arc, int equilibrium) {
 
 void NearestArcs::tell(std::vector<JudgedFrame>& frames, int dimension) const {
     for (const Found& found : frames_) {
-        const bool same = found.lacking.empty() && found.beside.empty();
+        const bool same = found.lacking.empty() && found.extra.empty();
         frames[found.frame].result.nearest_arc =
             found.equilibrium < 0 ? "the exact run has no arc"
                                   : fmt::format("arc {} on the way to equilibrium {}, {}", found.arc, found.equilibrium,
                                                 same ? "the same contacts"
                                                      : "without" + names_of(found.lacking, dimension) + ", with" +
-                                                           names_of(found.beside, dimension));
+                                                           names_of(found.extra, dimension));
     }
 }
 

@@ -29,7 +29,7 @@ class NearestArcs {
         std::size_t frame = 0;
         std::vector<Contact> pressed;
         int equilibrium = -1, arc = 0;
-        std::vector<Contact> lacking, beside; ///< contacts of the arc without the frame, and the reverse
+        std::vector<Contact> lacking, extra; ///< contacts of the arc without the frame, and the reverse
     };
     std::vector<Found> frames_;
     std::vector<Contact> contacts_;

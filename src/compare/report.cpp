@@ -1,6 +1,6 @@
 #include "compare/report.hpp"
 
-#include "contact/names.hpp"
+#include "contact/words.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 #include "io/json.hpp"

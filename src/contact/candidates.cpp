@@ -1,7 +1,5 @@
 #include "contact/candidates.hpp"
 
-#include "contact/cell_drift.hpp"
-#include "contact/gap_sign.hpp"
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 #include "core/work.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Complete lists of contact candidates and the certificate of non-overlap (proofs/contact_candidates.md).
+/// Complete lists of contact candidates and the certificate of non-overlap (proofs/contact_candidates.md); how far the
+/// grains of a periodic cell have moved since a list was found.
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
@@ -74,5 +75,22 @@ struct Admissibility {
 /// `known`: a list to use when it was made at this very configuration (and no disk is fixed: it leaves out pairs that
 /// cannot move), so that the search is saved; else its triangulation is carried here.
 Admissibility certify_admissible(const Packing& packing, double allowance, const CandidateList* known = nullptr);
+
+/// Does not count the affine part of the motion, nor the common motion along periodic axes (proofs/cells.md, C8).
+struct CellDrift {
+    /// The list is complete while this is below half its
+    /// reach. Infinity: the list was found for other grains.
+    double used = 0;
+    /// Largest growth of `used` per length that bounds the displacement of
+    /// every grain and wall and the change of the cell (Frobenius norm).
+    double rate = 1;
+};
+
+/// \pre there are periodic axes. Cost: O(n).
+CellDrift cell_drift(const CandidateList& list, const Packing& packing);
+
+/// Largest growth of `used` along a displacement of all coordinates:
+/// a norm of the displacement. \pre `list` is of these grains
+double drift_along(const CandidateList& list, const Packing& packing, const std::vector<double>& displacement);
 
 } // namespace isostat

@@ -1,5 +1,4 @@
-#include "contact/cell_drift.hpp"
-
+#include "contact/candidates.hpp"
 #include "core/dot.hpp"
 #include "core/roundoff.hpp"
 

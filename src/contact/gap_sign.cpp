@@ -1,5 +1,3 @@
-#include "contact/gap_sign.hpp"
-
 #include "contact/separation.hpp"
 
 #include <CGAL/Exact_rational.h>

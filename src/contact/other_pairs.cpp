@@ -2,9 +2,9 @@
 
 #include "contact/candidates.hpp"
 #include "contact/contact_set.hpp"
-#include "contact/gap_sign.hpp"
 #include "contact/images.hpp"
 #include "contact/near_pairs.hpp"
+#include "contact/separation.hpp"
 
 #include <cmath>
 #include <limits>

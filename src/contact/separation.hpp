@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Relative positions of the grains of a contact: the only code that forms r = x_j - x_i + A m.
+/// Relative positions of the grains of a contact: the only code that forms r = x_j - x_i + A m; the exact sign of a
+/// gap.
 
 #include <isostat/contact/state.hpp>
 
@@ -179,5 +180,10 @@ inline double zero_distance(const Packing& packing, const Contact& contact) {
     return contact.kind == ContactKind::bar ? packing.bar_length(contact.i, contact.j)
                                             : touching_distance(packing.radius, contact);
 }
+
+/// Sign (-1, 0, 1) of gap + allowance over the reals, for the stored doubles: by an interval (CGAL::Interval_nt), and
+/// where that contains 0 by rationals (CGAL::Exact_rational). \pre finite coordinates and radii; not a
+/// held coordinate.
+int gap_sign(const Packing& packing, const Contact& contact, double allowance);
 
 } // namespace isostat

@@ -1,14 +1,16 @@
 #pragma once
 /// \file
-/// Words of failures that name contacts, put together when they are shown: private to the library.
+/// Words of failures that name contacts, put together when they are shown, and lists of names: private to the library.
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
+#include <isostat/packing/packing.hpp>
 
 #include <fmt/format.h>
 
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace isostat {
 
@@ -61,6 +63,25 @@ template <class... Values> Words words(FormatOfWords<Values...> format, Values..
 
 template <class... Values> Failure failed(FailureKind kind, FormatOfWords<Values...> format, Values... values) {
     return {kind, words<Values...>(format, std::move(values)...)};
+}
+
+/// "12-40", "3-left", ...
+inline std::vector<std::string> contact_names(const std::vector<Contact>& contacts, int dimension = 2) {
+    std::vector<std::string> names;
+    for (const Contact& contact : contacts) {
+        names.push_back(to_string(contact, dimension));
+    }
+    return names;
+}
+
+/// Names of the N_f degrees of freedom, in their order: "x of disk 3", "top wall", ...
+inline std::vector<std::string> dof_names(const Packing& packing) {
+    const DofMap dofs(packing);
+    std::vector<std::string> names;
+    for (int d = 0; d < dofs.dof_count(); ++d) {
+        names.push_back(dofs.name(d));
+    }
+    return names;
 }
 
 } // namespace isostat

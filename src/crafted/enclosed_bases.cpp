@@ -1,7 +1,7 @@
 #include "crafted/enclosed_bases.hpp"
 
-#include "contact/names.hpp"
 #include "contact/separation.hpp"
+#include "contact/words.hpp"
 #include "core/roundoff.hpp"
 #include "io/json.hpp"
 #include "rigidity/isostatic.hpp"

@@ -1,6 +1,5 @@
 #include "crafted/gap_order.hpp"
 
-#include "contact/gap_sign.hpp"
 #include "contact/images.hpp"
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"

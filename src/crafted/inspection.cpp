@@ -1,7 +1,6 @@
 #include "contact/contact_set.hpp"
 #include "core/splitmix.hpp"
 #include "crafted/inspection_parts.hpp"
-#include "crafted/rigid_motions.hpp"
 #include "rigidity/strained_matrix.hpp"
 
 #include <isostat/core/machine.hpp>

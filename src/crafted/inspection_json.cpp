@@ -1,4 +1,4 @@
-#include "contact/names.hpp"
+#include "contact/words.hpp"
 #include "io/json.hpp"
 #include "packing/bodies.hpp"
 

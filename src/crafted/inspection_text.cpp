@@ -1,4 +1,4 @@
-#include "contact/names.hpp"
+#include "contact/words.hpp"
 #include "core/index.hpp"
 #include "core/refuse.hpp"
 #include "packing/bodies.hpp"

@@ -2,7 +2,6 @@
 #include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/section.hpp"
-#include "io/toml.hpp"
 #include "packing/bodies.hpp"
 #include "packing/load_faults.hpp"
 #include "packing/words.hpp"

@@ -1,5 +1,3 @@
-#include "crafted/peeling.hpp"
-
 #include "contact/separation.hpp"
 #include "core/refuse.hpp"
 #include "crafted/able.hpp"

@@ -1,4 +1,4 @@
-#include "crafted/rigid_motions.hpp"
+#include "crafted/inspection_parts.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,5 @@
-#include "exact/independent_columns.hpp"
-
 #include "exact/elimination.hpp"
+#include "exact/rank.hpp"
 
 namespace isostat::exact {
 

@@ -1,7 +1,7 @@
 #include "exact/rank.hpp"
 
 #include "exact/elimination.hpp"
-#include "sparse/fill_order.hpp"
+#include "sparse/pattern.hpp"
 
 #include <colamd.h>
 

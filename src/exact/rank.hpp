@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Exact rank of a sparse matrix by elimination over a prime field.
+/// Exact rank of a sparse matrix by elimination over a prime field, and its first independent columns.
 
 #include "sparse/pattern.hpp"
 
@@ -52,5 +52,11 @@ int rank(const sparse::Matrix<std::uint64_t>& matrix);
 /// The ranks of the first `ends[k]` rows for every k, in one elimination: a pivot is taken from later rows only where
 /// the rest of its column is 0 in the earlier rows. \pre `ends` ascends to the number of rows
 std::vector<int> ranks_of_first_rows(const sparse::Matrix<std::uint64_t>& matrix, std::span<const int> ends);
+
+/// Columns that are independent mod 2^61 - 1 of the columns before them, in increasing order:
+/// their number is the rank mod p, and they are independent over Q (statement T4). Other columns
+/// are dependent mod p, which proves nothing over Q. Rows are eliminated sparsest column entry
+/// first; cost grows with the fill of the natural column order, so this is for inspection.
+std::vector<int> independent_columns(const sparse::Matrix<std::uint64_t>& matrix);
 
 } // namespace isostat::exact

@@ -43,11 +43,11 @@ std::string likely_name(const std::string& name) {
                                                                            {"0", "x"},
                                                                            {"1", "y"},
                                                                            {"2", "z"}};
-        static const std::set<std::string, std::less<>> beside{"m",        "mm",     "cm",     "um",     "pos",
-                                                               "position", "points", "center", "centre", "coordinates"};
+        static const std::set<std::string, std::less<>> ignored{
+            "m", "mm", "cm", "um", "pos", "position", "points", "center", "centre", "coordinates"};
         if (const auto found = meant.find(word); found != meant.end() && out == "-") {
             out = found->second;
-        } else if (beside.find(word) == beside.end()) {
+        } else if (ignored.find(word) == ignored.end()) {
             return "-";
         }
     }

@@ -1,6 +1,5 @@
-#include "io/toml.hpp"
-
 #include "core/refuse.hpp"
+#include "io/section.hpp"
 #include "io/text.hpp"
 
 #include <isostat/core/machine.hpp>

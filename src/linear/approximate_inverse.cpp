@@ -3,7 +3,7 @@
 #include "core/wide.hpp"
 #include "core/work.hpp"
 #include "linear/solve_schedule.hpp"
-#include "sparse/fill_order.hpp"
+#include "sparse/pattern.hpp"
 
 #include <klu.h>
 

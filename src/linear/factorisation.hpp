@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Solves with a contact matrix that was proved regular.
+/// Solves with a contact matrix that was proved regular; a structure with its factors.
 
 #include "linear/approximate_inverse.hpp"
 #include "rigidity/isostatic.hpp"
@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace isostat {
@@ -62,6 +63,17 @@ class Factorisation {
     Factorisation() = default;
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
+};
+
+/// Not movable because the factors refer to the structure.
+struct FactorisedStructure {
+    explicit FactorisedStructure(IsostaticStructure s) : structure(std::move(s)), factorisation(structure) {}
+    FactorisedStructure(IsostaticStructure s, ApproximateInverse factors)
+        : structure(std::move(s)), factorisation(Factorisation::of(structure, std::move(factors))) {}
+    FactorisedStructure(const FactorisedStructure&) = delete;
+    FactorisedStructure& operator=(const FactorisedStructure&) = delete;
+    IsostaticStructure structure;
+    Factorisation factorisation;
 };
 
 } // namespace isostat

@@ -12,20 +12,20 @@ namespace isostat {
 
 /// KLU's factors and permutations.
 struct SolveSchedule::Parts {
-    Lines lower, upper, beside; ///< L by columns, U and F by rows
+    Lines lower, upper, off_diagonal; ///< L by columns, U and F by rows
     std::vector<int> rows, columns, blocks;
 
     Parts(klu_symbolic& symbolic, klu_numeric*& numeric)
-        : lower(symbolic.n, numeric->lnz), upper(symbolic.n, numeric->unz), beside(symbolic.n, numeric->nzoff),
+        : lower(symbolic.n, numeric->lnz), upper(symbolic.n, numeric->unz), off_diagonal(symbolic.n, numeric->nzoff),
           rows(at(symbolic.n)), columns(at(symbolic.n)), blocks(at(symbolic.nblocks) + 1) {
         klu_common common;
         klu_defaults(&common);
         klu_extract(numeric, &symbolic, lower.start.data(), lower.index.data(), lower.value.data(), upper.start.data(),
-                    upper.index.data(), upper.value.data(), beside.start.data(), beside.index.data(),
-                    beside.value.data(), rows.data(), columns.data(), nullptr, blocks.data(), &common);
+                    upper.index.data(), upper.value.data(), off_diagonal.start.data(), off_diagonal.index.data(),
+                    off_diagonal.value.data(), rows.data(), columns.data(), nullptr, blocks.data(), &common);
         klu_free_numeric(&numeric, &common);
         upper = upper.transposed();
-        beside = beside.transposed();
+        off_diagonal = off_diagonal.transposed();
         join_small_blocks();
     }
 
@@ -46,8 +46,8 @@ struct SolveSchedule::Parts {
         blocks = std::move(joined);
         Lines inside(0, 0);
         Lines outside(0, 0);
-        inside.index.reserve(upper.index.size() + beside.index.size());
-        inside.value.reserve(upper.index.size() + beside.index.size());
+        inside.index.reserve(upper.index.size() + off_diagonal.index.size());
+        inside.value.reserve(upper.index.size() + off_diagonal.index.size());
         const auto append = [](Lines& to, int index, double value) {
             to.index.push_back(index);
             to.value.push_back(value);
@@ -62,12 +62,12 @@ struct SolveSchedule::Parts {
             inside.value.insert(inside.value.end(), upper.value.begin() + upper.start[row],
                                 upper.value.begin() + upper.start[row + 1]);
             first[row] = inside.index.size();
-            for (std::size_t e = at(beside.start[row]); e < at(beside.start[row + 1]); ++e) {
-                const int column = beside.index[e];
+            for (std::size_t e = at(off_diagonal.start[row]); e < at(off_diagonal.start[row + 1]); ++e) {
+                const int column = off_diagonal.index[e];
                 if (column < blocks[block]) {
                     place[at(column)] = inside.index.size();
                 }
-                append(column < blocks[block] ? inside : outside, column, beside.value[e]);
+                append(column < blocks[block] ? inside : outside, column, off_diagonal.value[e]);
             }
             for (std::size_t above = at(first_above[row]); above < row; ++above) {
                 const double factor = lower.entry(above, static_cast<int>(row));
@@ -86,7 +86,7 @@ struct SolveSchedule::Parts {
             outside.start.push_back(static_cast<int>(outside.index.size()));
         }
         upper = std::move(inside);
-        beside = std::move(outside);
+        off_diagonal = std::move(outside);
     }
 };
 
@@ -98,16 +98,16 @@ SolveSchedule::SolveSchedule(const std::shared_ptr<const Parts>& parts)
 
 SolveSchedule::SolveSchedule(const Parts& parts, Future<Triangle> lower)
     : rows_(parts.rows), columns_(parts.columns), upper_(parts.upper, parts.blocks, false), lower_(lower.get()) {
-    const Lines& beside = parts.beside;
+    const Lines& off_diagonal = parts.off_diagonal;
     for (std::size_t b = 0; b + 1 < parts.blocks.size(); ++b) {
-        beside_start_.push_back(beside_.size());
+        off_diagonal_start_.push_back(off_diagonal_.size());
         for (int k = parts.blocks[b]; k < parts.blocks[b + 1]; ++k) {
-            for (int e = beside.start[at(k)]; e < beside.start[at(k) + 1]; ++e) {
-                beside_.push_back({k, beside.index[at(e)], beside.value[at(e)]});
+            for (int e = off_diagonal.start[at(k)]; e < off_diagonal.start[at(k) + 1]; ++e) {
+                off_diagonal_.push_back({k, off_diagonal.index[at(e)], off_diagonal.value[at(e)]});
             }
         }
     }
-    beside_start_.push_back(beside_.size());
+    off_diagonal_start_.push_back(off_diagonal_.size());
 }
 
 namespace {
@@ -131,9 +131,9 @@ void in_order(std::span<double> rhs, const std::vector<int>& from, const std::ve
 
 void SolveSchedule::solve(std::span<double> rhs) const {
     in_order(rhs, rows_, columns_, [this](double* x) {
-        for (std::size_t b = beside_start_.size() - 1; b-- > 0;) {
-            for (std::size_t e = beside_start_[b]; e < beside_start_[b + 1]; ++e) {
-                x[at(beside_[e].row)] -= beside_[e].value * x[at(beside_[e].column)];
+        for (std::size_t b = off_diagonal_start_.size() - 1; b-- > 0;) {
+            for (std::size_t e = off_diagonal_start_[b]; e < off_diagonal_start_[b + 1]; ++e) {
+                x[at(off_diagonal_[e].row)] -= off_diagonal_[e].value * x[at(off_diagonal_[e].column)];
             }
             lower_.forwards(b, x);
             upper_.backwards(b, x);
@@ -143,11 +143,11 @@ void SolveSchedule::solve(std::span<double> rhs) const {
 
 void SolveSchedule::solve_transposed(std::span<double> rhs) const {
     in_order(rhs, columns_, rows_, [this](double* x) {
-        for (std::size_t b = 0; b + 1 < beside_start_.size(); ++b) {
+        for (std::size_t b = 0; b + 1 < off_diagonal_start_.size(); ++b) {
             upper_.forwards(b, x);
             lower_.backwards(b, x);
-            for (std::size_t e = beside_start_[b]; e < beside_start_[b + 1]; ++e) {
-                x[at(beside_[e].column)] -= beside_[e].value * x[at(beside_[e].row)];
+            for (std::size_t e = off_diagonal_start_[b]; e < off_diagonal_start_[b + 1]; ++e) {
+                x[at(off_diagonal_[e].column)] -= off_diagonal_[e].value * x[at(off_diagonal_[e].row)];
             }
         }
     });

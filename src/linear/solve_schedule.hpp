@@ -25,7 +25,7 @@ class SolveSchedule {
 
   private:
     /// An entry of F.
-    struct Beside {
+    struct OffDiagonal {
         int row, column;
         double value;
     };
@@ -36,8 +36,8 @@ class SolveSchedule {
 
     std::vector<int> rows_, columns_; ///< P and Q
     Triangle upper_, lower_;
-    std::vector<Beside> beside_;
-    std::vector<std::size_t> beside_start_; ///< first entry of each block of rows
+    std::vector<OffDiagonal> off_diagonal_;
+    std::vector<std::size_t> off_diagonal_start_; ///< first entry of each block of rows
 };
 
 } // namespace isostat

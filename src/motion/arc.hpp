@@ -1,9 +1,11 @@
 #pragma once
 /// \file
-/// One arc: open a contact, keep the others, follow the mechanism to the first event.
+/// One arc: open a contact, keep the others, follow the mechanism to the first event; its end where the contacts are
+/// nearly singular.
 
 #include "contact/candidates.hpp"
 #include "linear/factorisation.hpp"
+#include "rigidity/isostatic.hpp"
 
 #include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
@@ -30,11 +32,11 @@ struct ArcOptions {
     bool precisely = false;
     std::optional<Contact> closes; ///< ends the arc: the caller proved that this contact closes earlier
     /// Pairs that touch at the start without being contacts: `leaving` are proved to separate at once (as the opened
-    /// contact does), `resting` are proved to keep their distance all along, `taken_to_rest` are only assumed to keep
-    /// it, or to graze later: they are checked at the end of each step.
+    /// contact does), `kept_touching` are proved to keep their distance all along, `assumed_touching` are only assumed
+    /// to keep it, or to graze later: they are checked at the end of each step.
     std::vector<Contact> leaving;
-    std::vector<Contact> resting;
-    std::vector<Contact> taken_to_rest;
+    std::vector<Contact> kept_touching;
+    std::vector<Contact> assumed_touching;
 };
 
 /// The start of an arc: a structure made at the packing, with factors that solve accurately for it. The gap of `opened`
@@ -116,5 +118,22 @@ class ArcDeparture {
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
+
+/// An arc that was followed in double to an end where the contacts are nearly singular.
+struct RoughEnd {
+    const IsostaticStructure& structure; ///< structure at the start
+    ContactId opened;
+    Contact closed;
+    const Packing& end;
+    const std::vector<double>& tangent; ///< tangent at the end, on coordinates, forwards
+    double displacement;                ///< largest displacement of a coordinate along the arc
+};
+
+/// The coordinates nearest to the vertex with the contact that closed, by Newton's method with gaps in double-double
+/// and fresh factors at each step. In double a gap that closes at a rate of 1e-8 is 0, up to rounding, on a stretch of
+/// 1e-8 or more, and the matrix changes along this stretch. Where the gap nearly grazes, two places have gap 0: the
+/// iteration begins a little before the end, so that it finds the first. Nothing: no convergence. The result is a
+/// guess; the caller has to prove what it needs. Cost: some 20 factorisations.
+std::optional<Packing> precise_end(const RoughEnd& rough);
 
 } // namespace isostat

@@ -1,8 +1,8 @@
 #pragma once
 // Where the polynomial of a piece of an arc is expanded: private to the room.
 
+#include "linear/factorisation.hpp"
 #include "motion/certify_arc.hpp"
-#include "motion/factorised_structure.hpp"
 
 #include <memory>
 #include <vector>

@@ -2,7 +2,6 @@
 // The chord method on the kept gaps of an arc: private to the room.
 
 #include "linear/factorisation.hpp"
-#include "motion/factorised_structure.hpp"
 #include "rigidity/isostatic.hpp"
 #include "verified/arithmetic.hpp"
 

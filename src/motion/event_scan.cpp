@@ -1,6 +1,6 @@
 #include "motion/event_scan.hpp"
 
-#include "contact/cell_drift.hpp"
+#include "contact/candidates.hpp"
 #include "contact/contact_set.hpp"
 #include "core/dot.hpp"
 #include "core/roundoff.hpp"
@@ -119,9 +119,9 @@ bool renew_candidates(CandidateList& candidates, const Packing& at) {
 
 EventScan::EventScan(const Contact& opened, const ArcOptions& options, CandidateList& candidates,
                      std::vector<Contact> open)
-    : opened_(opened), leaving_(options.leaving), resting_(options.resting), candidates_(candidates),
+    : opened_(opened), leaving_(options.leaving), touching_(options.kept_touching), candidates_(candidates),
       active_(std::move(open)) {
-    resting_.insert(resting_.end(), options.taken_to_rest.begin(), options.taken_to_rest.end());
+    touching_.insert(touching_.end(), options.assumed_touching.begin(), options.assumed_touching.end());
     if (!active_.empty()) {
         complete();
     }
@@ -143,7 +143,7 @@ void EventScan::list(const Packing& at, const std::vector<Contact>& kept) {
 
 /// The open candidates that take part, and the contact that opens, which may close again.
 void EventScan::complete() {
-    std::erase_if(active_, [&](const Contact& c) { return c == opened_ || listed(resting_, c); });
+    std::erase_if(active_, [&](const Contact& c) { return c == opened_ || listed(touching_, c); });
     if (opened_.kind != ContactKind::held) {
         active_.push_back(opened_);
     }
@@ -243,7 +243,7 @@ bool EventScan::leaves(const Contact& contact) const {
 }
 
 std::vector<Contact> EventScan::open_at_end(const Contact& closed) {
-    if (!resting_.empty() || active_.empty()) {
+    if (!touching_.empty() || active_.empty()) {
         return {};
     }
     if (opened_.kind != ContactKind::held) {

@@ -66,7 +66,7 @@ class EventScan {
     void complete();
 
     Contact opened_;
-    std::vector<Contact> leaving_, resting_;
+    std::vector<Contact> leaving_, touching_;
     CandidateList& candidates_;
     std::vector<Contact> active_;
     std::vector<double> gap_, rate_; ///< of `active_`, at the start of the step

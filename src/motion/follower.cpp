@@ -370,7 +370,7 @@ std::optional<Failure> Follower::go_on(Reached there) {
     here_.at = std::move(there.point.at);
     here_.tangent = std::move(there.point.tangent);
     here_power_ = there.power;
-    for (const Contact& pair : options_.taken_to_rest) {
+    for (const Contact& pair : options_.assumed_touching) {
         constexpr double seen = 1e-10; // of a radius: far above the rounding of a length
         if (quick_gap(here_.at, pair) < -seen * here_.at.min_radius()) {
             return failed(FailureKind::undecided, "{} touch and were taken not to close, but overlap on the way",

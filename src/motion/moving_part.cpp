@@ -1,6 +1,6 @@
 #include "motion/moving_part.hpp"
 
-#include "contact/cell_drift.hpp"
+#include "contact/candidates.hpp"
 #include "contact/contact_set.hpp"
 #include "motion/common_grid.hpp"
 

@@ -18,7 +18,7 @@ class MovingPart {
   public:
     MovingPart(const ArcVertex& start, const ArcVertex& end, std::size_t slot, double start_uncertainty,
                double end_uncertainty);
-    /// Bound of the distance between the true end vertex and the same vertex with the resting grains at their places at
+    /// Bound of the distance between the true end vertex and the same vertex with the grains at rest at their places at
     /// the start (C11): 0 in a box.
     [[nodiscard]] static double shift_of_end(const ArcVertex& start, const ArcVertex& end);
     /// Empty, or the reason why the part cannot be certified.

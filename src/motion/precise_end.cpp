@@ -1,7 +1,6 @@
-#include "motion/precise_end.hpp"
-
 #include "core/dot.hpp"
 #include "linear/factorisation.hpp"
+#include "motion/arc.hpp"
 #include "verified/corrected_configuration.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "preparation/pair_forces.hpp"
+#include "preparation/soft.hpp"
 
 #include <isostat/core/contact.hpp>
 

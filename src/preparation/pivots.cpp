@@ -3,7 +3,7 @@
 #include "contact/words.hpp"
 #include "core/dot.hpp"
 #include "preparation/polish.hpp"
-#include "statics/first_to_vanish.hpp"
+#include "statics/quotient.hpp"
 #include "statics/statics.hpp"
 #include "verified/configuration.hpp"
 

@@ -4,7 +4,6 @@
 #include "core/parallel.hpp"
 #include "core/refuse.hpp"
 #include "core/work.hpp"
-#include "preparation/pair_forces.hpp"
 #include "preparation/scale.hpp"
 
 #include <algorithm>

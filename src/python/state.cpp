@@ -1,7 +1,7 @@
 // Binds State and Packing, whose arrays view the library's memory.
-#include "certificate/contact_table.hpp"
+#include "certificate/averages.hpp"
 #include "checker/run_records.hpp"
-#include "contact/names.hpp"
+#include "contact/words.hpp"
 #include "convert.hpp"
 #include "core/refuse.hpp"
 #include "io/equilibria.hpp"

@@ -334,10 +334,10 @@ std::string force_picture(const State& stored, std::span<const double> forces, c
         draw_scale(canvas, state, forces);
     }
     constexpr double border = 20;
-    constexpr double above = 56;   // the box, for arrows
-    constexpr double beside = 150; // to the right of the box, for arrows and their stress
-    constexpr double below = 84;   // for scale and caption
-    const double width = 1000 + border + beside;
+    constexpr double above = 56;  // the box, for arrows
+    constexpr double right = 150; // to the right of the box, for arrows and their stress
+    constexpr double below = 84;  // for scale and caption
+    const double width = 1000 + border + right;
     const double height = canvas.height() + above + below;
     std::string text = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- forces by isostat -->\n<svg "
                                    "xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" "

@@ -1,6 +1,6 @@
 #include "report/run_report.hpp"
 
-#include "certificate/contact_table.hpp"
+#include "certificate/averages.hpp"
 #include "core/refuse.hpp"
 #include "core/work.hpp"
 #include "io/files.hpp"

@@ -1,4 +1,3 @@
-#include "exact/independent_columns.hpp"
 #include "exact/rank.hpp"
 #include "rigidity/isostatic.hpp"
 #include "rigidity/strained_matrix.hpp"

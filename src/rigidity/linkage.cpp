@@ -71,13 +71,13 @@ class Linkage {
         assert(packing.dimension == plane);
         for (std::size_t e = 0; e < touching.size(); ++e) {
             for (const auto& [from, to] : {ends(e), std::pair{ends(e).second, ends(e).first}}) {
-                beside_[from][to] = e;
+                adjacent_[from][to] = e;
             }
             if (!touching[e].of_disks()) {
                 turning_.fix(e); // the normal of a wall does not turn
             }
         }
-        for (const auto& [node, neighbours] : beside_) {
+        for (const auto& [node, neighbours] : adjacent_) {
             node < disks_ ? find_cells(node) : find_cells_at_wall(node);
         }
     }
@@ -96,7 +96,7 @@ class Linkage {
     /// Degrees of freedom of the grains.
     [[nodiscard]] int free() const {
         int count = 0;
-        for (const auto& [node, neighbours] : beside_) {
+        for (const auto& [node, neighbours] : adjacent_) {
             count += node < disks_ ? plane : is_ground(node) ? 0 : 1;
         }
         return count;
@@ -119,8 +119,8 @@ class Linkage {
         const Contact& c = touching_[e];
         return {c.i, c.of_disks() ? c.j : wall(c.j, c.kind == ContactKind::upper_wall)};
     }
-    [[nodiscard]] bool touch(int a, int b) const { return beside_.at(a).count(b) != 0; }
-    [[nodiscard]] std::size_t edge(int a, int b) const { return beside_.at(a).at(b); }
+    [[nodiscard]] bool touch(int a, int b) const { return adjacent_.at(a).count(b) != 0; }
+    [[nodiscard]] std::size_t edge(int a, int b) const { return adjacent_.at(a).at(b); }
     [[nodiscard]] auto bar(int i, int j) const { return length_of_bar(packing_.radius, i, j); }
 
     void add_cell(int axis, const std::vector<int>& nodes) {
@@ -136,8 +136,8 @@ class Linkage {
 
     /// Finds triangles and parallelograms in which i is the disk of lowest number.
     void find_cells(int i) {
-        for (const auto& [j, first] : beside_.at(i)) {
-            for (const auto& [l, last] : beside_.at(i)) {
+        for (const auto& [j, first] : adjacent_.at(i)) {
+            for (const auto& [l, last] : adjacent_.at(i)) {
                 if (j >= disks_ || l >= disks_ || j <= i || l <= j) {
                     continue;
                 }
@@ -146,7 +146,7 @@ class Linkage {
                     turning_.join(first, edge(j, l), false);
                     add_cell(plane, {i, j, l});
                 }
-                for (const auto& [k, second] : beside_.at(j)) {
+                for (const auto& [k, second] : adjacent_.at(j)) {
                     if (k > i && k < disks_ && k != l && touch(k, l) && bar(i, j) == bar(k, l) &&
                         bar(j, k) == bar(l, i)) {
                         turning_.join(first, edge(k, l), false);
@@ -160,8 +160,8 @@ class Linkage {
 
     /// Finds cells at a wall: two of its disks that touch each other, or two of equal size that touch a third disk.
     void find_cells_at_wall(int w) {
-        for (const auto& [i, at_i] : beside_.at(w)) {
-            for (const auto& [j, at_j] : beside_.at(w)) {
+        for (const auto& [i, at_i] : adjacent_.at(w)) {
+            for (const auto& [j, at_j] : adjacent_.at(w)) {
                 if (j <= i) {
                     continue;
                 }
@@ -169,7 +169,7 @@ class Linkage {
                     turning_.fix(edge(i, j));
                     add_cell(axis_of(w), {w, i, j});
                 }
-                for (const auto& [k, at_k] : beside_.at(i)) {
+                for (const auto& [k, at_k] : adjacent_.at(i)) {
                     if (k < disks_ && touch(k, j) && bar(i, i) == bar(j, j)) {
                         turning_.join(edge(i, k), edge(j, k), true);
                         add_cell(axis_of(w), {w, i, k, j});
@@ -191,7 +191,7 @@ class Linkage {
             }
             return node;
         };
-        for (const auto& [node, neighbours] : beside_) {
+        for (const auto& [node, neighbours] : adjacent_) {
             if (node < disks_ || axis_of(node) == axis) {
                 piece.emplace(node, node);
             }
@@ -208,7 +208,7 @@ class Linkage {
             }
         }
         int ground = 0;
-        for (const auto& [node, neighbours] : beside_) {
+        for (const auto& [node, neighbours] : adjacent_) {
             ground += node >= disks_ && axis_of(node) == axis && is_ground(node) ? 1 : 0;
         }
         const int cycles = edges - static_cast<int>(piece.size()) + pieces;
@@ -237,7 +237,7 @@ class Linkage {
     const Packing& packing_;
     int disks_;
     const std::vector<Contact>& touching_;
-    std::map<int, std::map<int, std::size_t>> beside_; ///< the edges by their two ends
+    std::map<int, std::map<int, std::size_t>> adjacent_; ///< the edges by their two ends
     Turning turning_;
     std::vector<Cell> cells_;
 };

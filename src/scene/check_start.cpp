@@ -1,6 +1,6 @@
 #include "contact/candidates.hpp"
 #include "core/refuse.hpp"
-#include "exact/independent_columns.hpp"
+#include "exact/rank.hpp"
 #include "linear/factorisation.hpp"
 #include "packing/load_faults.hpp"
 

@@ -1,9 +1,8 @@
 #include "core/refuse.hpp"
 #include "io/files.hpp"
+#include "io/section.hpp"
 #include "io/text.hpp"
-#include "io/toml.hpp"
 #include "packing/words.hpp"
-#include "scene/radii.hpp"
 #include "scene/settings.hpp"
 
 #include <isostat/io/state_file.hpp>

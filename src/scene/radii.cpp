@@ -1,8 +1,7 @@
-#include "scene/radii.hpp"
-
 #include "io/files.hpp"
 #include "io/lines.hpp"
-#include "io/toml.hpp"
+#include "io/section.hpp"
+#include "scene/settings.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

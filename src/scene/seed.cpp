@@ -2,7 +2,7 @@
 
 #include "core/refuse.hpp"
 #include "io/files.hpp"
-#include "io/toml.hpp"
+#include "io/section.hpp"
 #include "scene/settings.hpp"
 
 #include <isostat/scene/scene.hpp>

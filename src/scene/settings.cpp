@@ -1,6 +1,6 @@
 #include "scene/settings.hpp"
 
-#include "io/toml.hpp"
+#include "io/section.hpp"
 
 #include <fmt/format.h>
 

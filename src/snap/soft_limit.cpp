@@ -1,7 +1,7 @@
 #include "core/dot.hpp"
 #include "linear/factorisation.hpp"
 #include "rigidity/isostatic.hpp"
-#include "statics/first_to_vanish.hpp"
+#include "statics/quotient.hpp"
 
 #include <isostat/snap/snap.hpp>
 

@@ -200,8 +200,8 @@ SoftList list_by_forces(const std::string& file, const Packing& packing, const s
     for (const Contact& wall : walls) {
         forces.emplace(wall, NAN);
     }
-    const std::string beside = packing.cell.all() ? "" : fmt::format(", {} overlaps with walls", walls.size());
-    out.words = fmt::format("{} pairs with a force in {}{}{}, without rattlers{}", pairs, contacts, parts, beside,
+    const std::string with_walls = packing.cell.all() ? "" : fmt::format(", {} overlaps with walls", walls.size());
+    out.words = fmt::format("{} pairs with a force in {}{}{}, without rattlers{}", pairs, contacts, parts, with_walls,
                             walls_apart(packing));
     const auto listed = forces | std::views::keys;
     out.contacts = able_to_carry(packing, {listed.begin(), listed.end()});

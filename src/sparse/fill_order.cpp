@@ -1,4 +1,4 @@
-#include "sparse/fill_order.hpp"
+#include "sparse/pattern.hpp"
 
 #include <cholmod.h>
 #include <klu.h>

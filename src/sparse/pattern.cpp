@@ -1,7 +1,5 @@
 #include "sparse/pattern.hpp"
 
-#include "sparse/fill_order.hpp"
-
 #include <btf.h>
 #include <klu.h>
 

@@ -1,9 +1,8 @@
-#include "statics/first_order_backbone.hpp"
-
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
 #include "core/dot.hpp"
 #include "core/work.hpp"
+#include "statics/perturbed.hpp"
 
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>

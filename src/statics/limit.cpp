@@ -1,6 +1,6 @@
 #include "core/roundoff.hpp"
 #include "statics/contender.hpp"
-#include "statics/first_to_vanish.hpp"
+#include "statics/quotient.hpp"
 
 #include <algorithm>
 #include <cmath>

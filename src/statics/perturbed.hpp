@@ -1,10 +1,14 @@
 #pragma once
 /// \file
-/// Ties of forces settled at first order in a change of the radii R_i + eps rho_i (proofs/perturbation.md).
+/// First order in a change of the radii R_i + eps rho_i (proofs/perturbation.md): ties of forces, and the contacts of a
+/// hyperstatic packing that carry the load.
 
 #include "statics/statics.hpp"
 #include "verified/first_order.hpp"
 
+#include <isostat/contact/state.hpp>
+#include <isostat/core/result.hpp>
+#include <isostat/packing/load.hpp>
 #include <isostat/statics/rules.hpp>
 
 #include <vector>
@@ -47,5 +51,15 @@ class PerturbedStatics {
     double elsewhere_error_ = -1;
     double size_ = 0;
 };
+
+/// Among the contacts of a packing with more contacts than degrees of freedom, the N_f that stay closed in equilibrium
+/// when the radii become R_i + eps rho_i, eps > 0 small: the basis of the linear programme of P2
+/// (proofs/perturbation.md), maximise F.v with all first-order gaps >= 0, ties broken by the infinitesimal loads.
+/// Clp, double: a proposal, not a proof. The caller must prove the signs of all forces and of the first-order gaps of
+/// the other contacts, which make the proposal right. In the order of `contacts`.
+/// Failure: `undecided` when Clp finds no support of the load or keeps another number of contacts than N_f (this does
+/// not prove that no such contacts exist), `not_converged`.
+Result<std::vector<Contact>> first_order_backbone(const Packing& packing, const Load& load,
+                                                  const std::vector<Contact>& contacts, const std::vector<double>& rho);
 
 } // namespace isostat

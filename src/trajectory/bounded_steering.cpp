@@ -1,6 +1,6 @@
 #include "trajectory/bounded_steering.hpp"
 
-#include "motion/precise_end.hpp"
+#include "motion/arc.hpp"
 #include "trajectory/prover.hpp"
 #include "trajectory/record.hpp"
 
@@ -34,8 +34,8 @@ BoundedSteering::BoundedSteering(std::shared_ptr<const Vertex> from, ArcStart st
     if (departure_.ok()) {
         next_to_ = departure_.value().closes;
         arc_options_.leaving = departure_.value().leaving;
-        arc_options_.resting = departure_.value().resting;
-        arc_options_.taken_to_rest = departure_.value().taken_to_rest;
+        arc_options_.kept_touching = departure_.value().kept_touching;
+        arc_options_.assumed_touching = departure_.value().assumed_touching;
     }
 }
 
@@ -115,8 +115,8 @@ ArcProposal BoundedSteering::proposal(Arc path) const {
     arc.end = std::move(path.end);
     arc.tangent = std::move(path.tangent);
     arc.stays = next_to_.has_value();
-    arc.resting = departure_.value().resting;
-    arc.taken_to_rest = departure_.value().taken_to_rest;
+    arc.kept_touching = departure_.value().kept_touching;
+    arc.assumed_touching = departure_.value().assumed_touching;
     arc.settled = departure_.value().settled;
     arc.contacts = IsostaticStructure::exchange(from_.structure, arc.end, start_.opening.contact, path.closed);
     if (arc.contacts) {
@@ -175,7 +175,7 @@ auto BoundedSteering::remedies() -> const std::vector<Remedy>& {
                     !s.arc_options_.closes;
          },
          [](S& s, const Proof& p) {
-             s.arc_options_.taken_to_rest.push_back(p.record.closed);
+             s.arc_options_.assumed_touching.push_back(p.record.closed);
              s.refused_ = p.failure;
          }}};
     return table;

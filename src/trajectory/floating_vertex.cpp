@@ -16,7 +16,7 @@ constexpr double accuracy = 1e-12;
 /// Other forces are only as accurate as the choice of what opens needs: the estimated error times `safety` does not
 /// change it. If no arc was begun, some more digits save passes in the proof, which starts from these forces.
 constexpr double accuracy_for_proof = 1e-8;
-constexpr double accuracy_beside_arc = 1e-3;
+constexpr double accuracy_during_arc = 1e-3;
 constexpr double safety = 30;
 
 } // namespace
@@ -93,7 +93,7 @@ void FloatingVertex::solve(const Arrival& arrival) {
             begin_arc(arrival);
         }
         const bool begun = departure_ && departure_->opened == ContactId(chosen);
-        const double asked = begun ? accuracy_beside_arc : accuracy_for_proof;
+        const double asked = begun ? accuracy_during_arc : accuracy_for_proof;
         return (chosen == f.size() || error_ <= asked * std::abs(f[chosen])) && clear(f, chosen);
     };
     error_ = safety * factorisation.solve_forces_until(force, arrival.guess, enough);

@@ -1,4 +1,4 @@
-#include "trajectory/kept_candidates.hpp"
+#include "trajectory/vertex.hpp"
 
 #include <algorithm>
 

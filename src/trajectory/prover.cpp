@@ -56,7 +56,8 @@ void record_work(ArcRecord& record, const Vertex& from, const Vertex& to, const 
 ZeroGaps touch_still(const Vertex& from, const ArcProposal& arc) {
     ZeroGaps still;
     for (const auto& pair : from.perturbed ? from.perturbed->zero : ZeroGaps()) {
-        if (arc.stays || std::find(arc.resting.begin(), arc.resting.end(), pair.first) != arc.resting.end()) {
+        if (arc.stays ||
+            std::find(arc.kept_touching.begin(), arc.kept_touching.end(), pair.first) != arc.kept_touching.end()) {
             still.push_back(pair);
             if (arc.stays && pair.first == arc.record.closed) {
                 still.back().first = arc.record.opened;
@@ -256,7 +257,7 @@ std::optional<Failure> Prover::reach(ArcProof& proof, const Vertex& from, ArcPro
         return at_end(found.failure());
     }
     proof.closed_before = found.value().negative;
-    const std::vector<Contact>& taken = arc.taken_to_rest;
+    const std::vector<Contact>& taken = arc.assumed_touching;
     if (proof.closed_before && std::find(taken.begin(), taken.end(), *proof.closed_before) != taken.end()) {
         return at_end(failed(FailureKind::undecided,
                              "{} overlap: they touch where it begins, and neither the rate nor the second derivative "
@@ -266,10 +267,10 @@ std::optional<Failure> Prover::reach(ArcProof& proof, const Vertex& from, ArcPro
     if (proof.closed_before) {
         return std::nullopt;
     }
-    std::vector<Contact> resting = arc.resting;
-    resting.insert(resting.end(), taken.begin(), taken.end());
+    std::vector<Contact> touching = arc.kept_touching;
+    touching.insert(touching.end(), taken.begin(), taken.end());
     const bool overlapped = arc.relists || overlaps_at_first_order(from);
-    return arrive(proof, arc.settled, {arc.opening.contact, arc.stays, resting, overlapped}, found.value());
+    return arrive(proof, arc.settled, {arc.opening.contact, arc.stays, touching, overlapped}, found.value());
 }
 
 Result<std::shared_ptr<Vertex>> Prover::exchange(const Vertex& from, const ListExchange& exchange,

@@ -3,7 +3,6 @@
 /// Proves what steering proposes, and equilibria without data of earlier proofs: private to the room.
 
 #include "trajectory/counting.hpp"
-#include "trajectory/kept_candidates.hpp"
 #include "trajectory/record.hpp"
 #include "trajectory/steering.hpp"
 #include "trajectory/ties/second_order.hpp"

@@ -16,7 +16,7 @@ constexpr std::size_t most_exchanges = 1000; ///< exchanges of lists at one conf
 
 } // namespace
 
-void Standing::move_to(std::shared_ptr<Vertex> to, const Opening& opens) {
+void CurrentVertex::move_to(std::shared_ptr<Vertex> to, const Opening& opens) {
     const ArcKind begins = kind_of(to->structure.contacts()[opens.contact.index()], opens.infinitesimal);
     *this = {std::move(to), opens, begins};
 }
@@ -210,7 +210,7 @@ std::optional<Failure> Rearrangement::decide(ArcProof& proof) {
                       "here (cap max_strain = {:.6g})",
                       at_.load.strain_name(), std::abs(record.strain), at_.stress(), options().max_strain);
     }
-    if (auto failure = flows(proof)) {
+    if (auto failure = tilt_has_no_end(proof)) {
         return failure;
     }
     const ContactId held = record.power_turn ? here_.opening.contact : ContactId();
@@ -226,7 +226,7 @@ std::optional<Failure> Rearrangement::decide(ArcProof& proof) {
 }
 
 /// A dead shear force may do work without bound: W has no minimum along the tilt.
-std::optional<Failure> Rearrangement::flows(const ArcProof& proof) const {
+std::optional<Failure> Rearrangement::tilt_has_no_end(const ArcProof& proof) const {
     const Packing& now = proof.vertex->packing;
     for (std::size_t k = now.length_at(now.axes()); k < now.q.size(); ++k) {
         const std::size_t tilt = k - now.length_at(now.axes());

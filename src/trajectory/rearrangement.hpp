@@ -20,7 +20,7 @@ struct Reached {
 };
 
 /// The current vertex of a rearrangement, and what is known there.
-struct Standing {
+struct CurrentVertex {
     std::shared_ptr<Vertex> vertex; ///< last proved vertex
     Opening opening;                ///< what opens at `vertex`
     ArcKind kind = ArcKind::limit;  ///< kind of the arc that this opening begins
@@ -69,7 +69,7 @@ class Rearrangement {
     std::optional<Failure> propose(Proofs& proofs);
     std::optional<Failure> record(Proofs& proofs);
     std::optional<Failure> decide(ArcProof& proof);
-    [[nodiscard]] std::optional<Failure> flows(const ArcProof& proof) const;
+    [[nodiscard]] std::optional<Failure> tilt_has_no_end(const ArcProof& proof) const;
     /// What happens after the last proposed arc was judged.
     enum class Answer {
         agreed,       ///< the arc is recorded: the next one begins at its end
@@ -93,7 +93,7 @@ class Rearrangement {
     Prover& prover_;
     Recorder& recorder_;
     LimitLoad at_;
-    Standing here_;
+    CurrentVertex here_;
     std::vector<double> tilts_at_start_;
     int arcs_ = 0;
     bool ended_ = false;                   ///< no force is negative at `here_`

@@ -42,7 +42,8 @@ class Refactorisation {
     void begin(const ApproximateInverse& old, std::shared_ptr<const sparse::Matrix<double>> matrix) {
         if (!factors_.pending()) {
             slots_.clear();
-            arcs_left_ = std::clamp(static_cast<int>(old.renewal_cost() / passes_beside_an_arc), 1, most_arcs_beside);
+            arcs_left_ =
+                std::clamp(static_cast<int>(old.renewal_cost() / passes_during_an_arc), 1, most_arcs_meanwhile);
             factors_ = Future<ApproximateInverse>([old, matrix = std::move(matrix)] { return old.renewed(*matrix); });
         }
     }
@@ -67,8 +68,8 @@ class Refactorisation {
   private:
     /// One core makes the new factors while the other follows arcs. They are taken after a fixed number of operations,
     /// because the time at which they are ready depends on the machine, and results must not.
-    static constexpr double passes_beside_an_arc = 9;
-    static constexpr int most_arcs_beside = 8;
+    static constexpr double passes_during_an_arc = 9;
+    static constexpr int most_arcs_meanwhile = 8;
     Future<ApproximateInverse> factors_;
     std::vector<int> slots_; ///< slots exchanged since `begin`
     int arcs_left_ = 0;

@@ -55,13 +55,13 @@ struct ArcProposal {
     double cost_before = 0;                        ///< see `Vertex`
     bool ahead = false;                            ///< the start of the arc is not proved either
     /// With first-order terms:
-    bool stays = false;                 ///< the path is of length O(eps)
-    bool relists = false;               ///< only the list changes; pairs that touch may overlap at first order
-    std::vector<Contact> resting;       ///< pairs that touch all along the path
-    std::vector<Contact> taken_to_rest; ///< pairs assumed to touch; the gaps at the end decide
-    std::vector<TieDecision> settled;   ///< ties at the start of the path
-    std::optional<SteeredEnd> last;     ///< filled when no force is negative at the end
-    WorkCounts work{};                  ///< counted when the arc is recorded
+    bool stays = false;                    ///< the path is of length O(eps)
+    bool relists = false;                  ///< only the list changes; pairs that touch may overlap at first order
+    std::vector<Contact> kept_touching;    ///< pairs that touch all along the path
+    std::vector<Contact> assumed_touching; ///< pairs assumed to touch; the gaps at the end decide
+    std::vector<TieDecision> settled;      ///< ties at the start of the path
+    std::optional<SteeredEnd> last;        ///< filled when no force is negative at the end
+    WorkCounts work{};                     ///< counted when the arc is recorded
 };
 
 struct ArcProof;

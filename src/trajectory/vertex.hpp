@@ -1,13 +1,12 @@
 #pragma once
 /// \file
-/// A vertex with everything that is known about it: private to the room.
+/// A vertex with everything that is known about it, and what passes from vertex to vertex: private to the room.
 
 #include "contact/candidates.hpp"
 #include "linear/approximate_inverse.hpp"
 #include "rigidity/isostatic.hpp"
 #include "statics/decisions.hpp"
 #include "statics/perturbed.hpp"
-#include "trajectory/kept_candidates.hpp"
 #include "verified/configuration.hpp"
 #include "verified/proved_structure.hpp"
 
@@ -20,6 +19,22 @@
 #include <vector>
 
 namespace isostat {
+
+/// Flags of a sorted list of candidates, kept up to date from vertex to vertex: successive structures differ by a few
+/// contacts, and the list is the same for many of them.
+class KeptCandidates {
+  public:
+    /// One flag per candidate: 1 when the candidate is in `contacts`. Cost: two comparisons of lists, and a search per
+    /// contact whose position changed since the last call. \pre `candidates` sorted. Valid until the next call.
+    const std::vector<unsigned char>& of(const std::vector<Contact>& candidates, const std::vector<Contact>& contacts);
+
+  private:
+    void set(const Contact& contact, unsigned char flag);
+
+    std::vector<Contact> candidates_;
+    std::vector<Contact> contacts_;
+    std::vector<unsigned char> kept_;
+};
 
 /// Pairs whose gaps are 0, each with the evidence for 0.
 using ZeroGaps = std::vector<std::pair<Contact, Order>>;

@@ -2,7 +2,7 @@
 
 #include "core/roundoff.hpp"
 #include "core/wide.hpp"
-#include "sparse/fill_order.hpp"
+#include "sparse/pattern.hpp"
 
 #include <amd.h>
 

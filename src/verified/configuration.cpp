@@ -1,6 +1,6 @@
 #include "verified/configuration.hpp"
 
-#include "contact/gap_sign.hpp"
+#include "contact/separation.hpp"
 #include "core/roundoff.hpp"
 #include "verified/enclosed_vertex.hpp"
 #include "verified/norm.hpp"

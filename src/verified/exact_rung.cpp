@@ -1,4 +1,3 @@
-#include "contact/gap_sign.hpp"
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
 #include "core/work.hpp"

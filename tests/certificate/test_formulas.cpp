@@ -1,6 +1,6 @@
 // What is claimed of a true vertex against statements V4 to V7, with a bound of the inverse that is made worse on
 // purpose: then every term of every bound is large enough to be seen.
-#include "certificate/reach.hpp"
+#include "certificate/parts.hpp"
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
 #include "core/dot.hpp"

@@ -1,5 +1,5 @@
 // Rank and bound where a centre was moved by rounding (V5), against singular values that are computed there.
-#include "certificate/smallest_singular_values.hpp"
+#include "certificate/averages.hpp"
 #include "oracle/random.hpp"
 #include "support/test.hpp"
 #include "verified/proved_structure.hpp"

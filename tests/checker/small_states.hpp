@@ -2,7 +2,7 @@
 // Small states beyond those of the box with two movable walls, each an isostatic equilibrium; the sweep for the
 // smallest gap against brute force over all pairs.
 
-#include "checker/gaps.hpp"
+#include "checker/vertex.hpp"
 #include "oracle/truth.hpp"
 #include "support/crafted.hpp"
 

@@ -2,11 +2,11 @@
 // against forgers.
 #include "checker/claims.hpp"
 #include "checker/forces.hpp"
-#include "checker/gaps.hpp"
 #include "checker/maker.hpp"
 #include "checker/replay.hpp"
 #include "checker/small_states.hpp"
 #include "checker/strut.hpp"
+#include "checker/vertex.hpp"
 #include "oracle/pairs.hpp"
 #include "support/cells.hpp"
 #include "support/scale.hpp"

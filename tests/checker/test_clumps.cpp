@@ -1,8 +1,8 @@
 // Certificates of clumps: bars and held coordinates, and what a forger makes of them.
 #include "checker/claims.hpp"
 #include "checker/evidence.hpp"
-#include "checker/gaps.hpp"
 #include "checker/strut.hpp"
+#include "checker/vertex.hpp"
 #include "support/bad_input.hpp"
 #include "support/clumps.hpp"
 #include "support/forger.hpp"

@@ -3,7 +3,6 @@
 #include "checker/inverse.hpp"
 #include "checker/maker.hpp"
 #include "checker/normal_factor.hpp"
-#include "checker/singular_value.hpp"
 #include "checker/small_states.hpp"
 #include "checker/vertex.hpp"
 #include "support/scratch.hpp"

@@ -2,10 +2,10 @@
 // forgers; its constants of three axes against their worst cases.
 #include "checker/claims.hpp"
 #include "checker/evidence.hpp"
-#include "checker/gaps.hpp"
 #include "checker/images.hpp"
 #include "checker/maker.hpp"
 #include "checker/small_states.hpp"
+#include "checker/vertex.hpp"
 #include "oracle/pairs.hpp"
 #include "support/spheres.hpp"
 

@@ -2,7 +2,7 @@
 // found.
 // Nearly equal disks: where some stand nearly in line two branches of the motion come near each other, and steps in
 // double may end on the wrong one. Small steps from the equilibrium before tell them apart.
-#include "checker/logarithm.hpp"
+#include "checker/rational.hpp"
 #include "checker/replay.hpp"
 #include "support/mirror.hpp"
 #include "support/played.hpp"

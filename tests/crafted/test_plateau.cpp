@@ -1,6 +1,6 @@
 // Counts of foreign packings against the gap threshold.
 // Which contacts of spheres can carry, and counts of spheres against the gap threshold.
-#include "crafted/peeling.hpp"
+#include "crafted/able.hpp"
 #include "oracle/pairs.hpp"
 #include "support/scale.hpp"
 #include "support/spheres.hpp"

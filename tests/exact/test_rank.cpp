@@ -1,4 +1,3 @@
-#include "exact/independent_columns.hpp"
 #include "exact/rank.hpp"
 #include "oracle/matrices.hpp"
 #include "oracle/random.hpp"

@@ -1,7 +1,6 @@
 // Arcs with known ends: a free disk rolls over a fixed one past obstacles.
 #include "motion/arc.hpp"
 #include "motion/event_scan.hpp"
-#include "motion/precise_end.hpp"
 #include "motion/rolling.hpp"
 
 using namespace isostat;

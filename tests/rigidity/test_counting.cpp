@@ -1,5 +1,4 @@
 // Counting, the gate, and the identities of statics on crafted packings.
-#include "exact/independent_columns.hpp"
 #include "exact/rank.hpp"
 #include "linear/factorisation.hpp"
 #include "support/bad_input.hpp"

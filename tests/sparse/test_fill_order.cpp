@@ -1,7 +1,6 @@
 // Matrices as large and as full as those of many spheres: nested dissection orders them.
 #include "exact/rank.hpp"
 #include "oracle/matrices.hpp"
-#include "sparse/fill_order.hpp"
 #include "sparse/pattern.hpp"
 #include "support/scale.hpp"
 #include "support/test.hpp"

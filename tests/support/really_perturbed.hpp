@@ -1,7 +1,7 @@
 #pragma once
 // The same packing with radii that are really changed by a little: what a rule for ties is compared with.
 
-#include "statics/first_order_backbone.hpp"
+#include "statics/perturbed.hpp"
 #include "support/crafted.hpp"
 #include "support/newton.hpp"
 

@@ -2,7 +2,7 @@
 #include "contact/contact_set.hpp"
 #include "oracle/random.hpp"
 #include "support/test.hpp"
-#include "trajectory/kept_candidates.hpp"
+#include "trajectory/vertex.hpp"
 
 using namespace isostat;
 

@@ -1,7 +1,7 @@
 #include "trajectory/ties/first_order_side.hpp"
 
 #include "contact/words.hpp"
-#include "statics/first_order_backbone.hpp"
+#include "statics/perturbed.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
 

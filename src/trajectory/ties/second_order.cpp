@@ -133,15 +133,15 @@ std::optional<ListExchange> list_for_the_end(const Vertex& from, const ArcPropos
         return {};
     }
     const std::vector<bool> may_leave = not_zero(kernel_of(rates.transpose())); // these bear a self-stress
-    std::vector<Contact> resting = arc.resting;
-    resting.insert(resting.end(), arc.taken_to_rest.begin(), arc.taken_to_rest.end());
-    std::sort(resting.begin(), resting.end());
-    const std::vector<bool> holds = not_zero(rates_of(arc.end, from.structure.dofs(), resting) * motions);
-    for (std::size_t m = 0; m < resting.size(); ++m) {
-        const auto all = holds[m] ? sharers(from, arc.opening, resting[m], stress, may_leave) : std::vector<Sharer>();
+    std::vector<Contact> touching = arc.kept_touching;
+    touching.insert(touching.end(), arc.assumed_touching.begin(), arc.assumed_touching.end());
+    std::sort(touching.begin(), touching.end());
+    const std::vector<bool> holds = not_zero(rates_of(arc.end, from.structure.dofs(), touching) * motions);
+    for (std::size_t m = 0; m < touching.size(); ++m) {
+        const auto all = holds[m] ? sharers(from, arc.opening, touching[m], stress, may_leave) : std::vector<Sharer>();
         if (!all.empty()) {
-            const Enclosure rate = from.perturbed->first.rate(opened, +1, resting[m]);
-            return exchange_for(from, all, {"end", resting[m], rate, {}, {}, 0, 0});
+            const Enclosure rate = from.perturbed->first.rate(opened, +1, touching[m]);
+            return exchange_for(from, all, {"end", touching[m], rate, {}, {}, 0, 0});
         }
     }
     return {};

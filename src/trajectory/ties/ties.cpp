@@ -132,14 +132,14 @@ Result<Contact> first_of(const std::vector<Closing>& closing, bool choose, std::
 Result<Departure> depart(const Vertex& from, ContactId opened, int direction) {
     Departure departure;
     std::vector<Closing> closing;
-    std::vector<TieDecision> at_rest;
+    std::vector<TieDecision> assumed;
     const bool chooses = from.perturbed->statics.chooses();
     const bool held = from.structure.contacts()[opened.index()].kind == ContactKind::held;
     Terms terms(from);
     for (const auto& [contact, c] : from.perturbed->touching) {
         const Enclosure rate = terms.rate(opened, direction, contact);
         if (rate.value == 0 && rate.radius == 0) {
-            departure.resting.push_back(contact);
+            departure.kept_touching.push_back(contact);
             continue;
         }
         const bool asks = chooses && !rate.decided();
@@ -153,10 +153,10 @@ Result<Departure> depart(const Vertex& from, ContactId opened, int direction) {
                 departure.overlaps = BentPair{contact, rate, bend};
             }
         } else if (chooses && from.perturbed->first.moves_as_linkage(opened, contact)) {
-            departure.resting.push_back(contact);
+            departure.kept_touching.push_back(contact);
         } else if (asks && !bend.negative() && vanishes(rate)) {
-            departure.taken_to_rest.push_back(contact);
-            at_rest.push_back(
+            departure.assumed_touching.push_back(contact);
+            assumed.push_back(
                 {"rest", contact, bend, from.structure.contacts()[opened.index()], rate, 0, 0, TieChoice::zero});
         } else {
             return failed(FailureKind::undecided,
@@ -167,7 +167,7 @@ Result<Departure> depart(const Vertex& from, ContactId opened, int direction) {
         }
     }
     if (closing.empty()) {
-        departure.settled = std::move(at_rest);
+        departure.settled = std::move(assumed);
         return departure;
     }
     const auto first = first_of(closing, from.perturbed->statics.chooses(), departure.settled);
@@ -201,7 +201,7 @@ Result<TouchingPair> touching_pair(Terms& terms, bool chooses, const Contact& cl
                       "{} touch where {} closes, and their first-order gap is not told from 0: {}", named(contact),
                       named(closed), shown(c));
     }
-    if (way.stays || std::find(way.resting.begin(), way.resting.end(), contact) != way.resting.end()) {
+    if (way.stays || std::find(way.touching.begin(), way.touching.end(), contact) != way.touching.end()) {
         return TouchingPair{c, true, {}};
     }
     // Simple roots (P3): backwards from the end both open.

@@ -10,10 +10,10 @@ namespace isostat {
 struct Departure {
     std::vector<Contact> leaving; ///< pairs proved to separate at once
     std::vector<Contact>
-        resting; ///< pairs that keep touching: grains of one body (R1), or where ties are chosen a linkage (R2)
+        kept_touching; ///< pairs that keep touching: grains of one body (R1), or where ties are chosen a linkage (R2)
     /// Where ties are chosen: pairs whose rate and second derivative cannot be told from 0, without a count that
     /// explains this. They are assumed to keep touching; the end of the arc confirms or refutes this (C4).
-    std::vector<Contact> taken_to_rest;
+    std::vector<Contact> assumed_touching;
     /// The first pair to close, when some approach: the path is then of length O(eps), and the configuration stays.
     std::optional<Contact> closes;
     /// Where ties are chosen and no pair closes: the first by name of the pairs that would overlap at second order. The
@@ -27,10 +27,10 @@ Result<Departure> depart(const Vertex& from, ContactId opened, int direction);
 
 /// The path that ends at a vertex.
 struct Way {
-    ContactId slot;                      ///< slot of the new contact
-    bool stays;                          ///< its length is O(eps)
-    const std::vector<Contact>& resting; ///< pairs that touch all along, or are assumed to
-    bool overlapped;                     ///< pairs that touch at its start overlap at first order
+    ContactId slot;                       ///< slot of the new contact
+    bool stays;                           ///< its length is O(eps)
+    const std::vector<Contact>& touching; ///< pairs that touch all along, or are assumed to
+    bool overlapped;                      ///< pairs that touch at its start overlap at first order
 };
 
 /// Judges the pairs that touch at the end of a path and sets `touching` of `to`. Pairs that moved must be proved to

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Signs of the gaps of all pairs along a chain of tubes (proofs/checker.md, K19).
+/// Signs along a tube: of the gaps of all pairs (proofs/checker.md, K19), and of the power of the load (K20).
 
 #include "checker/tube.hpp"
 
@@ -44,5 +44,15 @@ class GapCourses {
     std::map<Contact, Course> last_;
     std::string trouble_;
 };
+
+/// The load along the arc.
+struct Pushing {
+    std::vector<Bounds> fixed; ///< per coordinate
+    /// True stresses: the force on the upper wall of an axis also has minus this times the lengths of the other axes.
+    PerAxis<double> pressure{};
+};
+
+/// Whether F . q' is positive for all s in [from, to].
+bool power_is_positive(const Pushing& load, const Moving& moving, const Tube& tube, double from, double to);
 
 } // namespace isostat::checker

@@ -1,12 +1,16 @@
 #pragma once
 /// \file
-/// Of which states `certify` claims anything, and the lengths that its bounds take from a packing: private to the room.
+/// What the functions of the room share: of which states they claim anything, the lengths that their bounds take from a
+/// packing, counts, forces at other loads. Private to the room.
 
 #include "packing/arc_bodies.hpp"
 
 #include <isostat/contact/state.hpp>
+#include <isostat/io/state_file.hpp>
+#include <isostat/rigidity/counting.hpp>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,5 +37,14 @@ double far_weight(const Packing& packing, double reach);
 /// Why the circles of these contacts may not be those that touch, the true vertex being `distance` (2-norm) from the
 /// packing at most; nothing: every normal is inside the sectors of both members (U9).
 std::optional<std::string> beyond_sectors(const ArcBodies& arcs, const std::vector<Contact>& contacts, double distance);
+
+/// `count_contacts`; when its rank is only a lower bound and the matrix is small, the rank from a kernel that was
+/// checked in rationals (`exact::kernel`): then `rank_exact` is `proved`.
+Counting exact_counting(const State& state);
+
+/// Finite forces at the true vertex of the state under each of these stresses along the axes in the place of its own,
+/// as `Certification::finite`; empty where no true vertex was found. Cost: a rank proof and two factorisations, then a
+/// few solves for each.
+std::vector<std::vector<Interval>> finite_forces(State state, std::span<const PerAxis<double>> stresses);
 
 } // namespace isostat

@@ -55,11 +55,8 @@ void print_strains(std::string& out, const Packing& packing, const crafted::Plat
 std::string deepest_of(const Packing& packing) {
     std::string out;
     double smallest = HUGE_VAL;
-    const Walls& walls = packing.walls;
     for (const Contact& c : compare::near_contacts(packing)) {
-        const auto& sides = c.kind == ContactKind::lower_wall ? walls.lower : walls.upper;
-        const bool there = c.of_disks() || sides[static_cast<std::size_t>(c.j)] != WallKind::absent;
-        if (const double g = gap(packing, c); there && g < smallest) {
+        if (const double g = gap(packing, c); g < smallest) {
             smallest = g;
             out = to_string(c, packing.dimension);
         }

@@ -13,9 +13,7 @@ PerAxis<double> outward(const State& state, const Contact& contact) {
     if (contact.of_disks()) {
         return direction(separation(state.packing.layout(), state.packing.q, contact));
     }
-    PerAxis<double> normal{};
-    normal[static_cast<std::size_t>(contact.j)] = contact.kind == ContactKind::lower_wall ? -1 : 1;
-    return normal;
+    return wall_normal<double>(contact);
 }
 
 namespace {

@@ -1,5 +1,7 @@
 #include "checker/arcs.hpp"
 
+#include "checker/at_wall.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -142,8 +144,7 @@ std::string unfit_arcs(const Problem& problem, const State& state, const TrueVer
         }
         Direction n = c.of_disks() ? at.between(c.i, c.j) : Direction{c.j == 0 ? 1 : 0, c.j == 0 ? 0 : 1};
         if (!c.of_disks()) { // as long as the box: its direction is known, and `left` takes it as well as others
-            const Integer along =
-                shifted_left(1, vertex.middle.most_bits()) * (c.kind == ContactKind::upper_wall ? 1 : -1);
+            const Integer along = shifted_left(1, vertex.middle.most_bits()) * -AtWall(c, problem.layout).sign;
             n = {n.x * along, n.y * along};
         }
         if (!inside(c.i, n) || (c.of_disks() && !inside(c.j, {-n.x, -n.y}))) {
@@ -219,7 +220,7 @@ bool NearestArcs::contains(const Contact& pair) const {
                          !(pair.of_disks() && arc_[static_cast<std::size_t>(pair.j)].body >= 0))) {
         return true;
     }
-    const double sign = pair.kind == ContactKind::upper_wall ? 1 : -1;
+    const double sign = pair.is_wall() ? -AtWall(pair, packing_.layout()).sign : 0;
     const double own = pair.of_disks() ? gap_if_facing(pair.i, pair.j) : gap_if_facing(pair.i, pair.j, sign);
     double largest = -std::numeric_limits<double>::infinity();
     for (const int i : members(pair.i)) {

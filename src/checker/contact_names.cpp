@@ -38,8 +38,8 @@ std::optional<Contact> held_coordinate(std::string_view rest, int dimension) {
 /// What follows "3-": another disk, or a wall.
 std::optional<Contact> contact_with(int i, std::string_view rest, int dimension) {
     for (int axis = 0; axis < dimension; ++axis) {
-        for (const ContactKind side : {ContactKind::lower_wall, ContactKind::upper_wall}) {
-            const Contact wall{side, i, axis};
+        for (const WallFacts& facts : wall_facts) {
+            const Contact wall{facts.kind, i, axis};
             if (to_string(wall, dimension).ends_with(fmt::format("-{}", rest))) {
                 return wall;
             }
@@ -101,9 +101,9 @@ std::optional<Contact> contact_of_columns(int i, int j, const Packing& packing) 
         return Contact{ContactKind::disk_disk, i, j};
     }
     for (int axis = 0; axis < packing.dimension; ++axis) {
-        for (const ContactKind side : {ContactKind::lower_wall, ContactKind::upper_wall}) {
-            if (contact_columns({side, i, axis}).second == j) {
-                return Contact{side, i, axis};
+        for (const WallFacts& facts : wall_facts) {
+            if (contact_columns({facts.kind, i, axis}).second == j) {
+                return Contact{facts.kind, i, axis};
             }
         }
     }

@@ -1,5 +1,7 @@
 #include "checker/first_order.hpp"
 
+#include "checker/at_wall.hpp"
+
 namespace isostat::checker {
 
 namespace {
@@ -130,8 +132,7 @@ Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
         const Rational distance = Rational(e_.state.packing.radius[i]) + Rational(e_.state.packing.radius[j]);
         return sum / Range(distance);
     }
-    const Range x = component(e_.problem, v, e_.problem.layout.of_disk(pair.i) + j);
-    return pair.kind == ContactKind::lower_wall ? x : component(e_.problem, v, e_.problem.layout.of_length(j)) - x;
+    return AtWall(pair, e_.problem.layout).distance([&](std::size_t k) { return component(e_.problem, v, k); });
 }
 
 /// |D v|^2: the contribution of the velocity to F'' of a pair of disks.

@@ -1,5 +1,6 @@
 #include "checker/follow.hpp"
 
+#include "checker/at_wall.hpp"
 #include "checker/images.hpp"
 #include "checker/newton.hpp"
 
@@ -34,8 +35,7 @@ double gap_at(const Packing& packing, const std::vector<double>& q, const Contac
     if (c.of_disks()) {
         return distance(packing, q, c) - r[i] - r[j];
     }
-    const double x = q[packing.axes() * i + j];
-    return (c.kind == ContactKind::lower_wall ? x : q[packing.length_at(j)] - x) - r[i];
+    return AtWall(c, packing.layout()).distance_in(q) - r[i];
 }
 
 /// A gap changes by at most this factor times the fastest coordinate for each of the two grains: above sqrt d.
@@ -104,15 +104,11 @@ std::optional<std::vector<Contact>> near_pairs(const Packing& packing, const std
             }
         });
     for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t a = 0; a < axes && !fixed(i); ++a) {
-            for (const ContactKind side : {ContactKind::lower_wall, ContactKind::upper_wall}) {
-                const auto& walls = side == ContactKind::lower_wall ? packing.walls.lower : packing.walls.upper;
-                const Contact pair{side, static_cast<int>(i), static_cast<int>(a)};
-                if (walls[a] != WallKind::absent && gap_at(packing, q, pair) < margin) {
-                    pairs.push_back(pair);
-                }
+        packing.walls.for_each(packing.dimension, static_cast<int>(i), [&](const Contact& wall) {
+            if (!fixed(i) && gap_at(packing, q, wall) < margin) {
+                pairs.push_back(wall);
             }
-        }
+        });
     }
     return pairs;
 }

@@ -1,4 +1,6 @@
 #include "checker/courses.hpp"
+
+#include "checker/at_wall.hpp"
 #include "checker/images.hpp"
 #include "core/index.hpp"
 
@@ -307,18 +309,12 @@ std::vector<Contact> GapCourses::near_walls(const Tube& tube, const std::vector<
     const std::vector<double>& q = tube.centre();
     std::vector<Contact> pairs;
     for (std::size_t i = 0; i < disks; ++i) {
-        for (std::size_t a = 0; a < packing.axes(); ++a) {
-            const double near = (packing.radius[i] + way[i] + way[disks]) * more;
-            const std::size_t x = packing.axes() * i + a;
-            const bool moves = moving_.moves[x];
-            if (packing.walls.lower[a] != WallKind::absent && moves && q[x] <= near) {
-                pairs.push_back({ContactKind::lower_wall, static_cast<int>(i), static_cast<int>(a)});
+        const double near = (packing.radius[i] + way[i] + way[disks]) * more;
+        packing.walls.for_each(packing.dimension, static_cast<int>(i), [&](const Contact& wall) {
+            if (moving_.takes_part(wall) && AtWall(wall, packing.layout()).distance_in(q) <= near) {
+                pairs.push_back(wall);
             }
-            if (packing.walls.upper[a] != WallKind::absent && (moves || moving_.moves[packing.length_at(a)]) &&
-                q[packing.length_at(a)] - q[x] <= near) {
-                pairs.push_back({ContactKind::upper_wall, static_cast<int>(i), static_cast<int>(a)});
-            }
-        }
+        });
     }
     return pairs;
 }

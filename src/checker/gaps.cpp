@@ -1,4 +1,5 @@
 #include "checker/arcs.hpp"
+#include "checker/at_wall.hpp"
 #include "checker/images.hpp"
 #include "checker/vertex.hpp"
 
@@ -28,20 +29,14 @@ bool own_image_moves(const Packing& packing, const Contact& pair) {
 }
 
 bool exists_and_moves(const Packing& packing, const Contact& pair) {
-    const auto axis = static_cast<std::size_t>(pair.j);
     if (pair.of_disks() && packing.cell.any()) { // no disk is fixed there
         return pair.i != pair.j || own_image_moves(packing, pair);
     }
-    switch (pair.kind) {
-    case ContactKind::disk_disk:
-    case ContactKind::bar: return !is_fixed(packing, pair.i) || !is_fixed(packing, pair.j);
-    case ContactKind::lower_wall: return packing.walls.lower[axis] != WallKind::absent && !is_fixed(packing, pair.i);
-    case ContactKind::upper_wall:
-        return packing.walls.upper[axis] == WallKind::movable ||
-               (packing.walls.upper[axis] == WallKind::fixed && !is_fixed(packing, pair.i));
-    case ContactKind::held: return false;
+    if (pair.of_disks()) {
+        return !is_fixed(packing, pair.i) || !is_fixed(packing, pair.j);
     }
-    return false;
+    const WallKind wall = pair.is_wall() ? packing.walls.of(pair) : WallKind::absent;
+    return wall == WallKind::movable || (wall == WallKind::fixed && !is_fixed(packing, pair.i));
 }
 
 /// The middle of the enclosure of the true vertex in doubles, in units of a power of two above all lengths (so that no
@@ -64,8 +59,7 @@ struct Approximation {
         const auto j = static_cast<std::size_t>(pair.j);
         const std::size_t of_i = layout.of_disk(pair.i);
         if (!pair.of_disks()) {
-            const double x = q[of_i + j];
-            return (pair.kind == ContactKind::lower_wall ? x : q[layout.of_length(j)] - x) - radius[i];
+            return AtWall(pair, layout).distance_in(q) - radius[i];
         }
         double square = 0;
         for (std::size_t a = 0; a < layout.axes(); ++a) {
@@ -92,9 +86,7 @@ Range exact_gap(const Problem& problem, const TrueVertex& vertex, const Contact&
         const Integer distance = problem.radius[i] + problem.radius[j];
         return Range(problem.length(root - distance), problem.length(root + 1 - distance)) + blur;
     }
-    const Integer x = q[problem.layout.of_disk(pair.i) + j];
-    const Integer wall = pair.kind == ContactKind::lower_wall ? Integer(0) : q[problem.layout.of_length(j)];
-    const Integer gap = (pair.kind == ContactKind::lower_wall ? x : Integer(wall - x)) - problem.radius[i];
+    const Integer gap = AtWall(pair, problem.layout).distance_in(q) - problem.radius[i];
     return Range(problem.length(gap)) + blur;
 }
 
@@ -193,15 +185,15 @@ std::optional<Contact> fixed_overlap(const Problem& problem, const State& state)
     }
     for (std::size_t k = 0; k < fixed.size(); ++k) {
         const int i = fixed[k];
-        for (int a = 0; a < layout.dimension; ++a) {
-            const auto axis = static_cast<std::size_t>(a);
-            const Integer wall = q[layout.of_length(axis)];
-            if (state.packing.walls.lower[axis] != WallKind::absent && coordinate(i, axis) < radius(i)) {
-                return Contact{ContactKind::lower_wall, i, a};
+        std::optional<Contact> overlap;
+        state.packing.walls.for_each(layout.dimension, i, [&](const Contact& wall) {
+            if (!overlap && state.packing.walls.of(wall) == WallKind::fixed &&
+                AtWall(wall, layout).distance_in(q) < radius(i)) {
+                overlap = wall;
             }
-            if (state.packing.walls.upper[axis] == WallKind::fixed && wall - coordinate(i, axis) < radius(i)) {
-                return Contact{ContactKind::upper_wall, i, a};
-            }
+        });
+        if (overlap) {
+            return overlap;
         }
         for (std::size_t m = k + 1; m < fixed.size(); ++m) {
             const int j = fixed[m];
@@ -242,12 +234,9 @@ void sweep(const std::vector<Placed>& places, const Approximation& at, double wi
     }
 }
 
-void sweep_walls(const Problem& problem, Collector& collector) {
-    for (int i = 0; i < problem.layout.disks; ++i) {
-        for (int a = 0; a < problem.layout.dimension; ++a) {
-            collector.offer({ContactKind::lower_wall, i, a});
-            collector.offer({ContactKind::upper_wall, i, a});
-        }
+void sweep_walls(const Packing& packing, Collector& collector) {
+    for (int i = 0; i < packing.disk_count(); ++i) {
+        packing.walls.for_each(packing.dimension, i, [&collector](const Contact& wall) { collector.offer(wall); });
     }
 }
 
@@ -261,7 +250,7 @@ std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const 
             std::copy_n(first, problem.layout.dimension, places.emplace_back(Placed{i}).at.begin());
         }
         Collector collector(state, at);
-        sweep_walls(problem, collector);
+        sweep_walls(state.packing, collector);
         sweep(places, at, widest, collector);
         return collector.nearest();
     }
@@ -273,7 +262,7 @@ std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const 
     while (range && images.usable()) {
         at.error = error * (1 + images.periods(*range)); // K9 with images
         Collector collector(state, at);
-        sweep_walls(problem, collector);
+        sweep_walls(state.packing, collector);
         sweep(images.near_cell(*range, reach), at, widest, collector);
         // Another sweep when a pair farther away could be as near as the nearest found.
         const double needed =

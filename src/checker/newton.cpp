@@ -1,5 +1,7 @@
 #include "checker/newton.hpp"
 
+#include "checker/at_wall.hpp"
+
 #include <cmath>
 
 namespace isostat::checker {
@@ -30,18 +32,15 @@ double System::held_value(const Contact& c) const {
 }
 
 template <class T> T System::value(const std::vector<T>& q, const Contact& c, const Row& row) const {
-    const auto i = static_cast<std::size_t>(c.i);
-    const auto j = static_cast<std::size_t>(c.j);
     if (c.kind == ContactKind::held) {
-        return weight_ * (q[i] - held_value(c));
+        return weight_ * (q[static_cast<std::size_t>(c.i)] - held_value(c));
     }
     const auto [one, other] = closed_at(packing_, c);
     if (c.of_disks()) {
         const T sum = T(one) + other;
         return (row.square(q, packing_.axes()) - sum * sum) / 2;
     }
-    const T& x = q[packing_.axes() * i + j];
-    return weight_ * ((c.kind == ContactKind::lower_wall ? x : T(q[packing_.length_at(j)] - x)) - one);
+    return weight_ * (AtWall(c, packing_.layout()).distance_in(q) - one);
 }
 
 template double System::value(const std::vector<double>& q, const Contact& c, const Row& row) const;

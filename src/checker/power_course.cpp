@@ -1,4 +1,6 @@
 #include "checker/courses.hpp"
+
+#include "checker/at_wall.hpp"
 #include "core/index.hpp"
 
 #include <utility>
@@ -49,7 +51,6 @@ void add_rows(std::vector<Bounds>& force, const Moving& moving, const Tube& tube
         const Contact& c = moving.kept[l];
         const auto i = at(c.i);
         const auto j = at(c.j);
-        const std::size_t of_i = c.kind == ContactKind::held ? i : layout.of_disk(c.i);
         if (c.kind == ContactKind::held) {
             force[i] = force[i] + weight * g[l];
         } else if (c.of_disks()) {
@@ -57,7 +58,7 @@ void add_rows(std::vector<Bounds>& force, const Moving& moving, const Tube& tube
             for (std::size_t a = 0; a < d.axes; ++a) {
                 const Bounds part = d[a] * g[l];
                 if (i != j) {
-                    force[of_i + a] = force[of_i + a] + part;
+                    force[layout.of_disk(c.i) + a] = force[layout.of_disk(c.i) + a] + part;
                     force[layout.of_disk(c.j) + a] = force[layout.of_disk(c.j) + a] - part;
                 }
                 for (std::size_t b = a; b < d.axes && !c.image.is_here(); ++b) {
@@ -66,10 +67,11 @@ void add_rows(std::vector<Bounds>& force, const Moving& moving, const Tube& tube
                 }
             }
         } else {
-            const Bounds part = weight * g[l] * (c.kind == ContactKind::lower_wall ? 1.0 : -1.0);
-            force[of_i + j] = force[of_i + j] + part;
-            if (c.kind == ContactKind::upper_wall) {
-                force[layout.of_length(j)] = force[layout.of_length(j)] - part;
+            const AtWall place(c, layout);
+            const Bounds part = weight * g[l] * static_cast<double>(place.sign);
+            force[place.disk] = force[place.disk] + part;
+            if (place.wall) {
+                force[*place.wall] = force[*place.wall] - part;
             }
         }
     }

@@ -1,5 +1,7 @@
 #include "checker/problem.hpp"
 
+#include "checker/at_wall.hpp"
+
 #include <isostat/contact/state.hpp>
 
 #include <algorithm>
@@ -37,9 +39,10 @@ template <class Number> Number in_units(double value, long unit) {
     return result;
 }
 
-/// Where a coordinate is at every true vertex, counted from the origin or from the upper wall.
+/// Where a coordinate is at every true vertex, counted from the origin or from the coordinate of a wall.
 struct Known {
-    enum From { nothing, origin, upper_wall } from = nothing;
+    bool known = false;
+    std::optional<std::size_t> from;
     Integer value;
 };
 
@@ -50,24 +53,15 @@ std::vector<Known> known_coordinates(const State& state, const Lengths& stored, 
     const Layout layout = state.packing.layout();
     for (std::size_t k = 0; k < layout.of_length(0); ++k) {
         if (!state.packing.fixed.empty() && state.packing.fixed[k / layout.axes()] != 0) {
-            known[k] = {Known::origin, stored[k]};
+            known[k] = {true, {}, stored[k]};
         }
     }
     for (const Contact& contact : state.contacts) {
-        switch (contact.kind) {
-        case ContactKind::disk_disk:
-        case ContactKind::bar: break;
-        case ContactKind::lower_wall:
-            known[layout.of_disk(contact.i) + at(contact.j)] = {Known::origin, radius[at(contact.i)]};
-            break;
-        case ContactKind::upper_wall:
-            known[layout.of_disk(contact.i) + at(contact.j)] = {Known::upper_wall, radius[at(contact.i)]};
-            break;
-        case ContactKind::held:
-            if (state.packing.bars.empty()) {
-                known[at(contact.i)] = {Known::origin, stored[at(contact.i)]};
-            }
-            break;
+        if (contact.is_wall()) {
+            const AtWall place(contact, layout);
+            known[place.disk] = {true, place.wall, place.sign * radius[at(contact.i)]};
+        } else if (contact.kind == ContactKind::held && state.packing.bars.empty()) {
+            known[at(contact.i)] = {true, {}, stored[at(contact.i)]};
         }
     }
     return known;
@@ -123,11 +117,11 @@ Row::Row(const Contact& contact, const Layout& layout) {
         add(static_cast<std::size_t>(contact.i), 1, 0);
         return;
     }
-    if (!contact.of_disks()) {
-        const bool lower = contact.kind == ContactKind::lower_wall;
-        add(layout.of_disk(contact.i) + axis, lower ? 1 : -1, axis);
-        if (!lower) {
-            add(layout.of_length(axis), 1, axis);
+    if (contact.is_wall()) {
+        const AtWall place(contact, layout);
+        add(place.disk, place.sign, axis);
+        if (place.wall) {
+            add(*place.wall, -place.sign, axis);
         }
         return;
     }
@@ -199,14 +193,13 @@ std::optional<double> length_of(const Packing& packing, const Contact& contact) 
 
 std::array<double, 2> closed_at(const Packing& packing, const Contact& contact) {
     const auto radius = [&packing](int disk) { return packing.radius[static_cast<std::size_t>(disk)]; };
-    switch (contact.kind) {
-    case ContactKind::disk_disk: return {radius(contact.i), radius(contact.j)};
-    case ContactKind::bar: return {*length_of(packing, contact), 0};
-    case ContactKind::lower_wall:
-    case ContactKind::upper_wall: return {radius(contact.i), 0};
-    case ContactKind::held: break;
+    if (contact.kind == ContactKind::bar) {
+        return {*length_of(packing, contact), 0};
     }
-    return {};
+    if (contact.kind == ContactKind::held) {
+        return {};
+    }
+    return {radius(contact.i), contact.of_disks() ? radius(contact.j) : 0};
 }
 
 std::vector<int> bodies_of(const Packing& packing) {
@@ -245,9 +238,7 @@ std::string unsupported_contact(const Packing& packing, const Contact& contact) 
     if (contact.kind == ContactKind::held) {
         return "the state has a " + name() + ", which is no contact: not checked";
     }
-    const auto axis = static_cast<std::size_t>(contact.j);
-    const bool lower = contact.kind == ContactKind::lower_wall;
-    if (!contact.of_disks() && (lower ? packing.walls.lower : packing.walls.upper)[axis] == WallKind::absent) {
+    if (contact.is_wall() && packing.walls.of(contact) == WallKind::absent) {
         return "there is no wall for the contact " + name();
     }
     return {};
@@ -339,7 +330,7 @@ void Problem::find_contacts_of(const State& state) {
     const auto level = [this, &known](const Contact& pair, const Row& row, std::size_t a) {
         const Known& at_i = known[layout.of_disk(pair.i) + a];
         const Known& at_j = known[layout.of_disk(pair.j) + a];
-        return at_i.from != Known::nothing && at_i.from == at_j.from && at_i.value == at_j.value &&
+        return at_i.known && at_j.known && at_i.from == at_j.from && at_i.value == at_j.value &&
                row.spread(a) == 2; // no period is in between
     };
     std::vector<std::pair<int, int>> touching;

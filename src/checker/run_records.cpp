@@ -132,7 +132,7 @@ void require_spelling(const EquilibriumLine& line, const std::string& what) {
     const int i = line.integer(what + "_i");
     const int j = line.integer(what + "_j");
     const bool none = j == no_contact && i >= no_contact;
-    if (!none && (i < 0 || j < front_wall || (j >= 0 && j < i))) {
+    if (!none && (i < 0 || j < last_wall || (j >= 0 && j < i))) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: {}_i,{}_j is '{},{}': expected a disk and a later one or a wall, or -9,-9",
                                 line.where, what, what, i, j));

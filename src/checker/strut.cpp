@@ -1,5 +1,6 @@
 #include "checker/strut.hpp"
 
+#include "checker/at_wall.hpp"
 #include "checker/forces.hpp"
 #include "core/index.hpp"
 
@@ -16,7 +17,7 @@ using Vector = std::array<double, 2>;
 Vector outward(const State& state, const Contact& c, std::size_t disk) {
     if (!c.of_disks()) {
         Vector normal{};
-        normal[static_cast<std::size_t>(c.j)] = c.kind == ContactKind::upper_wall ? 1 : -1;
+        normal[static_cast<std::size_t>(c.j)] = -AtWall(c, state.packing.layout()).sign;
         return normal;
     }
     const Row row(c, state.packing.layout());
@@ -290,10 +291,6 @@ std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b)
 
 namespace {
 
-bool is_wall(const Contact& c) {
-    return c.kind == ContactKind::lower_wall || c.kind == ContactKind::upper_wall;
-}
-
 /// The sphere of `wall` touches the two walls, and so does the other sphere of the contact.
 bool with_a_sphere_there(const std::vector<Contact>& contacts, const Contact& c, const Contact& wall,
                          const Contact& other) {
@@ -310,7 +307,7 @@ bool equal_in_edge(const Evidence& evidence, const Forces& load, const std::vect
     const Problem& problem = evidence.problem;
     const Contact& one = contacts[a];
     const Contact& other = contacts[b];
-    if (!is_wall(one) || !is_wall(other) || one.i != other.i || one.j == other.j) {
+    if (!one.is_wall() || !other.is_wall() || one.i != other.i || one.j == other.j) {
         return false;
     }
     for (const int axis : {one.j, other.j}) {
@@ -349,7 +346,7 @@ bool equal_in_notch(const Evidence& evidence, const Forces& load, const std::vec
         }
         const auto stands = [&](int member, const Contact& at) {
             const Contact wall{at.kind, member, at.j};
-            return is_wall(at) && std::find(contacts.begin(), contacts.end(), wall) != contacts.end();
+            return at.is_wall() && std::find(contacts.begin(), contacts.end(), wall) != contacts.end();
         };
         const auto alone = [&](int member, int axis) { // nothing else acts on it along the axis
             const int dof = evidence.problem.dof_of[static_cast<std::size_t>(plane * member + axis)];

@@ -1,5 +1,6 @@
 #include "checker/tube.hpp"
 
+#include "checker/at_wall.hpp"
 #include "checker/inverse.hpp"
 #include "checker/solver.hpp"
 #include "core/index.hpp"
@@ -64,24 +65,19 @@ double length_above(const Separation<Bounds>& d) {
 }
 
 Separation<Bounds> difference(const std::vector<double>& x, const Contact& c, const Layout& layout) {
-    const std::size_t i = c.kind == ContactKind::held ? 0 : layout.of_disk(c.i);
     Separation<Bounds> d(layout.axes());
-    switch (c.kind) {
-    case ContactKind::disk_disk:
-    case ContactKind::bar:
+    if (c.of_disks()) {
         for (std::size_t a = 0; a < d.axes; ++a) {
             if (c.i != c.j) {
-                d[a] = Bounds(x[i + a]) - Bounds(x[layout.of_disk(c.j) + a]);
+                d[a] = Bounds(x[layout.of_disk(c.i) + a]) - Bounds(x[layout.of_disk(c.j) + a]);
             }
             for (std::size_t b = a; b < d.axes && !c.image.is_here(); ++b) {
                 const std::size_t k = a == b ? layout.of_length(a) : layout.of_tilt(a, b);
                 d[a] = d[a] - Bounds(x[k]) * static_cast<double>(c.image.m[b]);
             }
         }
-        break;
-    case ContactKind::lower_wall: d[0] = Bounds(x[i + at(c.j)]); break;
-    case ContactKind::upper_wall: d[0] = Bounds(x[layout.of_length(at(c.j))]) - Bounds(x[i + at(c.j)]); break;
-    case ContactKind::held: break;
+    } else if (c.is_wall()) {
+        d[0] = AtWall(c, layout).distance([&x](std::size_t k) { return Bounds(x[k]); });
     }
     return d;
 }
@@ -101,16 +97,14 @@ bool Moving::of_cell(const std::vector<bool>& flags) const {
 }
 
 bool Moving::takes_part(const Contact& c) const {
-    const auto x = state.packing.layout().of_disk(c.i) + at(c.j);
-    switch (c.kind) {
-    case ContactKind::disk_disk:
-    case ContactKind::bar:
+    if (c.of_disks()) {
         return (c.i != c.j && (disk_moves(c.i) || disk_moves(c.j))) || (!c.image.is_here() && cell_moves());
-    case ContactKind::lower_wall: return moves[x];
-    case ContactKind::upper_wall: return moves[x] || moves[state.packing.length_at(at(c.j))];
-    case ContactKind::held: return moves[at(c.i)];
     }
-    return true;
+    if (c.kind == ContactKind::held) {
+        return moves[at(c.i)];
+    }
+    const AtWall place(c, state.packing.layout());
+    return moves[place.disk] || (place.wall && moves[*place.wall]);
 }
 
 double Moving::off_rest(const Contact& pair) const {
@@ -304,18 +298,17 @@ void Tube::bound_residuals() {
             d.push_back(difference(a_[k - 1], c, layout));
             stretch[k] = length_above(d[k]);
         }
-        const auto j = at(c.j);
         const auto [one, other] = closed_at(packing, c);
         if (!c.of_disks()) {
             residual[0] = ((d[0][0] - one) * weight_).size();
             for (std::size_t k = 1; k <= order; ++k) {
                 residual[k] = (d[k][0] * weight_).size();
             }
-            if (c.kind == ContactKind::upper_wall && moving_.loose[layout.of_length(j)]) {
-                residual[0] = sum_above(residual[0], product_above(moving_.rest, weight_));
-            }
-            if (moving_.loose[layout.of_disk(c.i) + j]) {
-                residual[0] = sum_above(residual[0], product_above(moving_.rest, weight_));
+            const AtWall place(c, layout);
+            for (const std::size_t k : {place.disk, place.wall.value_or(place.disk)}) {
+                if (moving_.loose[k]) {
+                    residual[0] = sum_above(residual[0], product_above(moving_.rest, weight_));
+                }
             }
             continue;
         }

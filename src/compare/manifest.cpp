@@ -127,7 +127,7 @@ std::vector<std::string> Manifest::wall_names() const {
 }
 
 Contact Manifest::with_wall(int grain, std::size_t wall) const {
-    return {wall < axes() ? ContactKind::lower_wall : ContactKind::upper_wall, grain, static_cast<int>(wall % axes())};
+    return {wall_facts[wall / axes()].kind, grain, static_cast<int>(wall % axes())};
 }
 
 double Manifest::reference_area(std::size_t axis) const {

@@ -248,8 +248,7 @@ class Reader {
         double most = 0;
         for (const auto& [c, force] : force_) {
             if (beyond_.count(c) == 0) {
-                const int other =
-                    is_wall(c) ? -1 - c.j - (c.kind == ContactKind::upper_wall ? frame_.packing.dimension : 0) : c.j;
+                const int other = is_wall(c) ? -1 - static_cast<int>(c.wall_number()) : c.j;
                 for (const int grain : {c.i, other}) {
                     most = std::max(most, at[grain] += unknown(c));
                 }

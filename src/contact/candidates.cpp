@@ -18,22 +18,14 @@ namespace isostat {
 namespace {
 
 /// Calls visit(contact) for every disk and every wall that is there; of arcs for those nearest to it.
-template <class Visit> void for_each_wall_contact(const Packing& packing, Visit visit_any) {
+template <class Visit> void for_each_wall_contact(const Packing& packing, Visit visit) {
     const ArcBodies arcs(packing);
-    const auto visit = [&](const Contact& contact) {
-        if (arcs.is_nearest(contact)) {
-            visit_any(contact);
-        }
-    };
     for (int i = 0; i < packing.disk_count(); ++i) {
-        for (int a = 0; a < packing.dimension; ++a) {
-            if (packing.walls.lower[static_cast<std::size_t>(a)] != WallKind::absent) {
-                visit(Contact{ContactKind::lower_wall, i, a});
+        packing.walls.for_each(packing.dimension, i, [&](const Contact& contact) {
+            if (arcs.is_nearest(contact)) {
+                visit(contact);
             }
-            if (packing.walls.upper[static_cast<std::size_t>(a)] != WallKind::absent) {
-                visit(Contact{ContactKind::upper_wall, i, a});
-            }
-        }
+        });
     }
 }
 
@@ -69,14 +61,8 @@ bool can_move(const Packing& packing, const Contact& pair) {
     if (!packing.is_fixed(DiskId(pair.i))) {
         return true;
     }
-    switch (pair.kind) {
-    case ContactKind::disk_disk:
-    case ContactKind::bar: return !packing.is_fixed(DiskId(pair.j));
-    case ContactKind::upper_wall: return packing.walls.upper[static_cast<std::size_t>(pair.j)] == WallKind::movable;
-    case ContactKind::lower_wall:
-    case ContactKind::held: return false;
-    }
-    return true;
+    return pair.of_disks() ? !packing.is_fixed(DiskId(pair.j))
+                           : pair.is_wall() && packing.walls.of(pair) == WallKind::movable;
 }
 
 std::optional<Contact> fixed_overlap(const Packing& packing) {

@@ -62,30 +62,24 @@ PerAxis<double> direction(PerAxis<double> d) {
 }
 
 std::string to_string(const Contact& contact, int dimension) {
-    switch (contact.kind) {
-    case ContactKind::bar: return fmt::format("bar {}-{}", contact.i, contact.j);
-    case ContactKind::disk_disk:
-        return fmt::format("{}-{}{}", contact.i, contact.j, image_text(contact.image, dimension));
-    case ContactKind::lower_wall:
-    case ContactKind::upper_wall: return fmt::format("{}-{}", contact.i, wall_name(contact));
-    case ContactKind::held:
-        return fmt::format("held {} of grain {}", axis_names[static_cast<std::size_t>(contact.i % dimension)],
-                           contact.i / dimension);
+    if (contact.of_disks()) {
+        return fmt::format("{}{}-{}{}", contact.kind == ContactKind::bar ? "bar " : "", contact.i, contact.j,
+                           image_text(contact.image, dimension));
     }
-    return {};
+    if (contact.is_wall()) {
+        return fmt::format("{}-{}", contact.i, wall_name(contact));
+    }
+    return fmt::format("held {} of grain {}", axis_names[static_cast<std::size_t>(contact.i % dimension)],
+                       contact.i / dimension);
 }
 
 double gap(const Packing& packing, const Contact& contact) {
-    switch (contact.kind) {
-    case ContactKind::disk_disk:
-    case ContactKind::bar:
+    if (contact.of_disks()) {
         return norm(separation(packing.layout(), packing.q, contact)) - zero_distance(packing, contact);
-    case ContactKind::lower_wall:
-    case ContactKind::upper_wall:
-        return wall_distance(packing.layout(), packing.q, contact) - touching_distance(packing.radius, contact);
-    case ContactKind::held: return 0;
     }
-    return 0;
+    return contact.is_wall()
+               ? wall_distance(packing.layout(), packing.q, contact) - touching_distance(packing.radius, contact)
+               : 0;
 }
 
 GapGradient::Rate GapGradient::rate(const std::vector<double>& velocity, double from) const {

@@ -168,14 +168,12 @@ std::vector<Contact> near_contacts(const Packing& packing, double reach, double 
     if (repeats) {
         std::erase_if(near, [&](const Contact& c) { return c.image.is_here() && !(gap(packing, c) < reach); });
     }
-    for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+    for (const WallFacts& facts : wall_facts) {
         for (int i = 0; i < packing.disk_count(); ++i) {
             for (int a = 0; a < packing.dimension; ++a) {
-                const Contact wall{kind, i, a};
-                if (packing.cell.periodic[static_cast<std::size_t>(a)]) {
-                    continue;
-                }
-                if (gap(packing, wall) < (kind == ContactKind::upper_wall ? upper_reach : reach)) {
+                const Contact wall{facts.kind, i, a};
+                if (packing.walls.of(wall) != WallKind::absent &&
+                    gap(packing, wall) < (facts.at_length ? upper_reach : reach)) {
                     near.push_back(wall);
                 }
             }

@@ -21,15 +21,7 @@ std::vector<Contact> all_pairs(const Packing& packing) {
         for (int j = i + 1; j < n && !packing.cell.any(); ++j) {
             pairs.push_back({ContactKind::disk_disk, i, j});
         }
-        for (int a = 0; a < packing.dimension; ++a) {
-            const auto axis = static_cast<std::size_t>(a);
-            if (packing.walls.lower[axis] != WallKind::absent) {
-                pairs.push_back({ContactKind::lower_wall, i, a});
-            }
-            if (packing.walls.upper[axis] != WallKind::absent) {
-                pairs.push_back({ContactKind::upper_wall, i, a});
-            }
-        }
+        packing.walls.for_each(packing.dimension, i, [&pairs](const Contact& wall) { pairs.push_back(wall); });
     }
     std::erase_if(pairs, [&packing](const Contact& pair) { return !can_move(packing, pair); });
     without_hidden_pairs(pairs, packing);

@@ -12,9 +12,9 @@
 namespace isostat {
 
 /// The separation of two grains as a function of the coordinates: r = x_j - x_i + A m of a disk and the image of
-/// another; x_i of a disk and a lower wall, L - x_i of a disk and an upper one, along the axis of the wall. It is
-/// linear in the coordinates, with coefficients -1 and +1, and m_a on those of the cell: applied to velocities it gives
-/// relative velocities, applied to derivatives the derivative of r.
+/// another; x_i of a disk and a wall that stands at 0, L - x_i of a wall that stands at L, along the axis of the wall.
+/// It is linear in the coordinates, with coefficients -1 and +1, and m_a on those of the cell: applied to velocities it
+/// gives relative velocities, applied to derivatives the derivative of r.
 ///
 /// Arithmetic: at(k) is the number for coordinate k (as in `Packing::q`), minus(a, b) a difference of two. In double r
 /// is exact where the coordinates are on the grid; elsewhere r without an image is correctly rounded.
@@ -22,23 +22,22 @@ namespace isostat {
 class Separation {
   public:
     /// \pre of a contact through an image or with a wall: `layout` has the number of disks
-    Separation(const Contact& contact, const Layout& layout)
-        : kind_(contact.kind), image_(contact.image), i_(contact.i), j_(contact.j), layout_(layout) {}
+    Separation(const Contact& contact, const Layout& layout) : contact_(contact), layout_(layout) {}
 
     /// \pre two disks
     template <class At, class Minus> [[nodiscard]] auto of_disks(At at, Minus minus) const {
         auto r = of_centres(at, minus);
         using Number = std::remove_cvref_t<decltype(r[0])>;
         static_assert(std::is_same_v<Number, std::remove_cvref_t<decltype(at(std::size_t{0}))>>);
-        if (!image_.is_here()) [[unlikely]] {
+        if (!contact_.image.is_here()) [[unlikely]] {
             add_periods(r, at, minus);
         }
         return r;
     }
     /// x_j - x_i alone, which is r without an image.
     template <class At, class Minus> [[nodiscard]] auto of_centres(At at, Minus minus) const {
-        const std::size_t i = layout_.of_disk(i_);
-        const std::size_t j = layout_.of_disk(j_);
+        const std::size_t i = layout_.of_disk(contact_.i);
+        const std::size_t j = layout_.of_disk(contact_.j);
         using Number = std::remove_cvref_t<decltype(minus(at(j), at(i)))>;
         const auto third = [&]() -> Number {
             if (layout_.dimension > plane) [[unlikely]] {
@@ -67,37 +66,41 @@ class Separation {
     }
     /// \pre a disk and a wall
     template <class At, class Minus> [[nodiscard]] auto of_wall(At at, Minus minus) const {
-        const auto x = layout_.of_disk(i_) + static_cast<std::size_t>(j_);
+        const std::size_t x = along_axis();
         using Number = std::remove_cvref_t<decltype(minus(at(x), at(x)))>;
-        return kind_ == ContactKind::lower_wall ? Number(at(x))
-                                                : minus(at(layout_.of_length(static_cast<std::size_t>(j_))), at(x));
+        return contact_.wall().at_length ? of_wall_at_length(at, minus) : Number(at(x));
+    }
+    /// \pre a disk and a wall that stands at L
+    template <class At, class Minus> [[nodiscard]] auto of_wall_at_length(At at, Minus minus) const {
+        const std::size_t x = along_axis();
+        const std::size_t wall = layout_.of_length(static_cast<std::size_t>(contact_.j));
+        return contact_.wall().side > 0 ? minus(at(wall), at(x)) : minus(at(x), at(wall));
     }
 
     /// Calls visit(coordinate, component, coefficient) for every coordinate that the gap depends on, in ascending
     /// order: the coefficient is the derivative of that component of r (of a held coordinate: 0, +1): -1 or +1, and m_a
     /// for coordinates of the cell. A disk and its own image depend on the cell alone. \pre i <= j
     template <class Visit> void for_each_coordinate(Visit visit) const {
-        const auto axis = static_cast<std::size_t>(j_);
-        const std::size_t x = layout_.of_disk(i_);
-        switch (kind_) {
-        case ContactKind::disk_disk:
-        case ContactKind::bar:
-            for (std::size_t a = 0; a < layout_.axes() && i_ != j_; ++a) {
+        if (contact_.of_disks()) {
+            const std::size_t x = layout_.of_disk(contact_.i);
+            for (std::size_t a = 0; a < layout_.axes() && contact_.i != contact_.j; ++a) {
                 visit(x + a, a, -1);
             }
-            for (std::size_t a = 0; a < layout_.axes() && i_ != j_; ++a) {
-                visit(layout_.of_disk(j_) + a, a, 1);
+            for (std::size_t a = 0; a < layout_.axes() && contact_.i != contact_.j; ++a) {
+                visit(layout_.of_disk(contact_.j) + a, a, 1);
             }
-            if (!image_.is_here()) [[unlikely]] {
+            if (!contact_.image.is_here()) [[unlikely]] {
                 for_each_period(visit);
             }
-            break;
-        case ContactKind::lower_wall: visit(x + axis, axis, 1); break;
-        case ContactKind::upper_wall:
-            visit(x + axis, axis, -1);
-            visit(layout_.of_length(axis), axis, 1);
-            break;
-        case ContactKind::held: visit(static_cast<std::size_t>(i_), std::size_t{0}, 1); break;
+        } else if (contact_.is_wall()) {
+            const auto axis = static_cast<std::size_t>(contact_.j);
+            const int side = contact_.wall().side;
+            visit(along_axis(), axis, -side);
+            if (contact_.wall().at_length) {
+                visit(layout_.of_length(axis), axis, side);
+            }
+        } else {
+            visit(static_cast<std::size_t>(contact_.i), std::size_t{0}, 1);
         }
     }
 
@@ -109,9 +112,9 @@ class Separation {
         for_each_coordinate([&](std::size_t coordinate, std::size_t component, int sign) {
             const int dof = dofs.dof_of(coordinate);
             if (dof >= 0) {
-                Number entry = kind_ > ContactKind::bar ? Number(-sign)
-                               : sign > 0               ? Number(-normal[component])
-                                                        : normal[component];
+                Number entry = !contact_.of_disks() ? Number(-sign)
+                               : sign > 0           ? Number(-normal[component])
+                                                    : normal[component];
                 for (int times = std::abs(sign); times > 1; --times) {
                     entry = sign > 0 ? Number(entry - normal[component]) : Number(entry + normal[component]);
                 }
@@ -121,23 +124,25 @@ class Separation {
     }
 
   private:
+    /// The coordinate of the disk along the axis of the wall.
+    [[nodiscard]] std::size_t along_axis() const {
+        return layout_.of_disk(contact_.i) + static_cast<std::size_t>(contact_.j);
+    }
     /// visit(coordinate, component of r, multiple) for the coordinates of the cell that A m depends on, ascending.
     template <class Visit> void for_each_period(Visit visit) const {
         for (std::size_t a = 0; a < layout_.axes(); ++a) {
-            if (image_.m[a] != 0) {
-                visit(layout_.of_length(a), a, static_cast<int>(image_.m[a]));
+            if (contact_.image.m[a] != 0) {
+                visit(layout_.of_length(a), a, static_cast<int>(contact_.image.m[a]));
             }
         }
         for (std::size_t b = 1; b < layout_.axes(); ++b) {
-            for (std::size_t a = 0; a < b && image_.m[b] != 0; ++a) {
-                visit(layout_.of_tilt(a, b), a, static_cast<int>(image_.m[b]));
+            for (std::size_t a = 0; a < b && contact_.image.m[b] != 0; ++a) {
+                visit(layout_.of_tilt(a, b), a, static_cast<int>(contact_.image.m[b]));
             }
         }
     }
 
-    ContactKind kind_;
-    Image image_;
-    int i_, j_;
+    Contact contact_;
     Layout layout_;
 };
 
@@ -160,19 +165,21 @@ template <class Vector> inline auto wall_distance(const Layout& layout, const Ve
                  [](const Number& a, const Number& b) -> Number { return a - b; });
 }
 
+/// The unit vector from a disk to a wall. \pre a disk and a wall
+template <class Number> PerAxis<Number> wall_normal(const Contact& contact) {
+    PerAxis<Number> normal{Number(0), Number(0), Number(0)};
+    normal[static_cast<std::size_t>(contact.j)] = Number(contact.wall().side);
+    return normal;
+}
+
 /// Separation at which the grains touch: R_i + R_j, R_i at a wall, 0 for a held coordinate. `radius`: a number of any
 /// type for each disk. \pre no bar
 template <class Radii> inline auto touching_distance(const Radii& radius, const Contact& contact) {
     using Number = std::remove_cvref_t<decltype(radius[0])>;
-    switch (contact.kind) {
-    case ContactKind::disk_disk:
+    if (contact.kind == ContactKind::disk_disk) {
         return Number(radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)]);
-    case ContactKind::lower_wall:
-    case ContactKind::upper_wall: return Number(radius[static_cast<std::size_t>(contact.i)]);
-    case ContactKind::bar:
-    case ContactKind::held: break;
     }
-    return Number(0);
+    return contact.is_wall() ? Number(radius[static_cast<std::size_t>(contact.i)]) : Number(0);
 }
 
 /// `touching_distance` in double, and the length of a bar: where the row of any contact has its zero.

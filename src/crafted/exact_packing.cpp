@@ -84,23 +84,15 @@ struct Touching {
 
 std::optional<Failure> take_walls(Touching& touching) {
     const ExactPacking& packing = touching.packing;
-    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        for (std::size_t a = 0; a < packing.axes(); ++a) {
-            const Number& c = packing.centre[i][a];
-            for (const bool lower : {true, false}) {
-                if ((lower ? packing.walls.lower[a] : packing.walls.upper[a]) == WallKind::absent) {
-                    continue;
-                }
-                const Contact contact(lower ? ContactKind::lower_wall : ContactKind::upper_wall, static_cast<int>(i),
-                                      static_cast<int>(a));
-                const Number gap = (lower ? c : packing.length[a] - c) - packing.radius[i];
-                if (auto failure = touching.take(contact, gap)) {
-                    return failure;
-                }
-            }
-        }
+    const auto at = [&](std::size_t k) -> const Number& { return packing.coordinate(k); };
+    std::optional<Failure> failure;
+    for (int i = 0; i < packing.disk_count() && !failure; ++i) {
+        packing.walls.for_each(packing.dimension(), i, [&](const Contact& wall) {
+            const Number x = Separation(wall, packing.layout()).of_wall(at, std::minus<>());
+            failure = failure ? failure : touching.take(wall, x - packing.radius[static_cast<std::size_t>(i)]);
+        });
     }
-    return std::nullopt;
+    return failure;
 }
 
 /// Upper bound of the change of a gap by rounding to doubles: half a unit of the last place of each coordinate, and for

@@ -80,12 +80,9 @@ void judge_holds(Inspection& inspection, const ExactPacking& packing) {
             arms[j].push_back({l, {-r[0], -r[1], -r[2]}});
             continue;
         }
-        const int side = contact.kind == ContactKind::lower_wall ? -1 : 1;
-        arms[i].push_back({l, {}});
-        arms[i].back().normal[j] = Number(side);
+        arms[i].push_back({l, wall_normal<Number>(contact)});
         // A movable wall without load carries no force, because all its normals have the same direction.
-        if (side > 0 && packing.walls.upper[j] == WallKind::movable && packing.load &&
-            packing.load->wall[j].is_zero()) {
+        if (packing.walls.of(contact) == WallKind::movable && packing.load && packing.load->wall[j].is_zero()) {
             inspection.carrying[l] = 0;
         }
     }

@@ -25,10 +25,8 @@ struct Direction {
     template <class Number>
     [[nodiscard]] PerAxis<Number> in(const Packing& packing, const std::vector<Contact>& all) const {
         const Contact& c = all[static_cast<std::size_t>(contact)];
-        PerAxis<Number> d{Number(0), Number(0), Number(0)};
-        if (!c.of_disks()) {
-            d[static_cast<std::size_t>(c.j)] = Number(c.kind == ContactKind::lower_wall ? -1 : 1);
-        } else {
+        PerAxis<Number> d = c.of_disks() ? PerAxis<Number>{} : wall_normal<Number>(c);
+        if (c.of_disks()) {
             const auto minus = [](const Number& a, const Number& b) -> Number { return a - b; };
             d = Separation(c, packing.layout()).of_disks([&](std::size_t k) { return Number(packing.q[k]); }, minus);
             for (Number& component : d) {

@@ -201,18 +201,11 @@ class Sequence {
             }
         }
         for (int i = 0; i < packing_.disk_count(); ++i) {
-            for (int a = 0; a < packing_.dimension; ++a) {
-                const auto axis = static_cast<std::size_t>(a);
-                const auto moves = [&](WallKind wall) {
-                    return wall == WallKind::movable || (wall == WallKind::fixed && !packing_.is_fixed(DiskId(i)));
-                };
-                if (moves(packing_.walls.lower[axis])) {
-                    keep({ContactKind::lower_wall, i, a});
+            packing_.walls.for_each(packing_.dimension, i, [&](const Contact& wall) {
+                if (packing_.walls.of(wall) == WallKind::movable || !packing_.is_fixed(DiskId(i))) {
+                    keep(wall);
                 }
-                if (moves(packing_.walls.upper[axis])) {
-                    keep({ContactKind::upper_wall, i, a});
-                }
-            }
+            });
         }
     }
 

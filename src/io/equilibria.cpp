@@ -203,14 +203,13 @@ RecordColumns record_columns(const MoreColumns& more) {
 }
 
 std::pair<int, int> contact_columns(const Contact& contact) {
-    switch (contact.i < 0 ? ContactKind::held : contact.kind) {
-    case ContactKind::disk_disk: return {contact.i, contact.j};
-    case ContactKind::bar: return {contact.i, first_bar - contact.j};
-    case ContactKind::lower_wall: return {contact.i, contact.j < plane ? -1 - contact.j : back_wall};
-    case ContactKind::upper_wall: return {contact.i, contact.j < plane ? -3 - contact.j : front_wall};
-    case ContactKind::held: break;
+    if (contact.i < 0 || contact.kind == ContactKind::held) {
+        return {contact.i < 0 ? no_contact : contact.i, no_contact};
     }
-    return {contact.i < 0 ? no_contact : contact.i, no_contact};
+    if (contact.is_wall()) {
+        return {contact.i, contact.wall().column[static_cast<std::size_t>(contact.j)]};
+    }
+    return {contact.i, contact.kind == ContactKind::bar ? first_bar - contact.j : contact.j};
 }
 
 const std::set<std::string>& integer_columns() {

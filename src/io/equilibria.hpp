@@ -19,8 +19,8 @@ namespace isostat {
 
 /// In both columns of a contact that there is not, and in the second one of a held coordinate.
 inline constexpr int no_contact = -9;
-/// In the second column, of spheres: after -1 left, -2 bottom, -3 right, -4 top.
-inline constexpr int back_wall = -5, front_wall = -6;
+/// The lowest number of a wall in the second column.
+inline constexpr int last_wall = wall_facts.back().column.back();
 /// In the second column, of a bar to disk j: that less j.
 inline constexpr int first_bar = -10;
 /// Columns i and j of a contact: see `equilibria_columns`.

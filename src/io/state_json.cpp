@@ -79,15 +79,17 @@ Contact contact_of(const Field& field, const Packing& packing) {
         return pair_from_json(field, i, disk_index(second, packing.disk_count()), packing);
     }
     field.require_size(2, "[disk, \"wall\"]");
-    for (std::size_t a = 0; a < packing.axes(); ++a) {
-        const bool lower = second.string() == lower_wall_names[a];
-        if (!lower && second.string() != upper_wall_names[a]) {
-            continue;
+    for (int a = 0; a < packing.dimension; ++a) {
+        for (const WallFacts& facts : wall_facts) {
+            const Contact wall(facts.kind, i, a);
+            if (second.string() != wall_name(wall)) {
+                continue;
+            }
+            if (packing.walls.of(wall) == WallKind::absent) {
+                field.fail("a wall that the packing has");
+            }
+            return wall;
         }
-        if ((lower ? packing.walls.lower[a] : packing.walls.upper[a]) == WallKind::absent) {
-            field.fail("a wall that the packing has");
-        }
-        return {lower ? ContactKind::lower_wall : ContactKind::upper_wall, i, static_cast<int>(a)};
     }
     second.fail("a grain or one of \"left\", \"right\", \"bottom\", \"top\"{}",
                 packing.dimension == plane ? "" : ", \"back\", \"front\"");
@@ -120,8 +122,10 @@ std::vector<std::pair<Contact, Enclosure>> terms_from(const Field& field, const 
 } // namespace
 
 Json contact_to_json(const Contact& contact, int dimension) {
-    switch (contact.kind) {
-    case ContactKind::disk_disk: {
+    if (contact.is_wall()) {
+        return Json::array({contact.i, wall_name(contact)});
+    }
+    if (contact.kind == ContactKind::disk_disk) {
         Json pair = Json::array({contact.i, contact.j});
         if (!contact.image.is_here()) {
             pair.push_back(Json::array());
@@ -131,12 +135,8 @@ Json contact_to_json(const Contact& contact, int dimension) {
         }
         return pair;
     }
-    case ContactKind::lower_wall:
-    case ContactKind::upper_wall: return Json::array({contact.i, wall_name(contact)});
-    case ContactKind::bar: return Json::array({"bar", contact.i, contact.j});
-    case ContactKind::held: return Json::array({"held", contact.i});
-    }
-    return {};
+    return contact.kind == ContactKind::bar ? Json::array({"bar", contact.i, contact.j})
+                                            : Json::array({"held", contact.i});
 }
 
 Contact contact_from_json(const Field& field, const Packing& packing) {

@@ -76,15 +76,10 @@ inline double quick_curvature(const Packing& at, const Contact& contact, const s
 
 /// Separation over a contact of any kind: all components for two disks, else one component, of a wall or a coordinate.
 inline PerAxis<double> separation_over(const Layout& layout, const std::vector<double>& x, const Contact& contact) {
-    PerAxis<double> d{};
-    switch (contact.kind) {
-    case ContactKind::disk_disk:
-    case ContactKind::bar: return separation(layout, x, contact);
-    case ContactKind::lower_wall:
-    case ContactKind::upper_wall: d[0] = wall_distance(layout, x, contact); break;
-    case ContactKind::held: d[0] = x[static_cast<std::size_t>(contact.i)]; break;
+    if (contact.of_disks()) {
+        return separation(layout, x, contact);
     }
-    return d;
+    return {contact.is_wall() ? wall_distance(layout, x, contact) : x[static_cast<std::size_t>(contact.i)]};
 }
 
 /// Gap, and its first two derivatives along a curve with this velocity and acceleration.

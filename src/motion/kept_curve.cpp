@@ -31,8 +31,8 @@ KeptCurve::KeptCurve(const Packing& start_packing, std::vector<Contact> list, st
             for (const std::size_t k : {i, j}) {
                 (start->is_fixed(DiskId(k)) ? at_rest : count)[k]++;
             }
-        } else if (c.kind == ContactKind::upper_wall) {
-            at_rest[disks + j] += start->walls.upper[j] == WallKind::movable ? 0 : 1;
+        } else if (c.is_wall() && c.wall().at_length) {
+            at_rest[disks + j] += start->walls.of(c) == WallKind::movable ? 0 : 1;
         }
     }
     find_blocks();
@@ -81,7 +81,7 @@ void KeptCurve::bound_in_cell() {
             squares[blocks[l].at[b]] += w;
             fourths[blocks[l].at[b]] += w * w / (target[l] * target[l]);
         }
-        if (c.kind == ContactKind::upper_wall && start->walls.upper[static_cast<std::size_t>(c.j)] == WallKind::fixed) {
+        if (c.is_wall() && c.wall().at_length && start->walls.of(c) == WallKind::fixed) {
             at_rest[disks] += 1;
         }
         if (!bends(l)) {

@@ -61,15 +61,13 @@ bool MovingPart::coordinate_moves(std::size_t coordinate) const {
 
 bool MovingPart::moves(const Contact& contact) const {
     const auto i = static_cast<std::size_t>(contact.i);
-    const auto j = static_cast<std::size_t>(contact.j);
-    switch (contact.kind) {
-    case ContactKind::disk_disk:
-    case ContactKind::bar: return disk_moves_[i] != 0 || disk_moves_[j] != 0;
-    case ContactKind::lower_wall: return disk_moves_[i] != 0;
-    case ContactKind::upper_wall: return disk_moves_[i] != 0 || wall_moves_[j] != 0;
-    case ContactKind::held: return coordinate_moves(i);
+    if (contact.kind == ContactKind::held) {
+        return coordinate_moves(i);
     }
-    return true;
+    if (contact.of_disks()) {
+        return disk_moves_[i] != 0 || disk_moves_[static_cast<std::size_t>(contact.j)] != 0;
+    }
+    return disk_moves_[i] != 0 || (contact.wall().at_length && wall_moves_[static_cast<std::size_t>(contact.j)] != 0);
 }
 
 /// The free row first, then the kept contacts that touch a moving grain.

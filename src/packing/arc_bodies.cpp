@@ -71,7 +71,7 @@ ArcBodies::Vector ArcBodies::normal(const Contact& contact) const {
     if (contact.of_disks()) {
         return between(contact.i, contact.j);
     }
-    const double along = contact.kind == ContactKind::upper_wall ? never_turning : -never_turning;
+    const double along = contact.wall().side * never_turning;
     return contact.j == 0 ? Vector{along, 0} : Vector{0, along};
 }
 
@@ -100,8 +100,7 @@ double ArcBodies::inside(const Contact& contact, double moved) const {
 }
 
 bool ArcBodies::faces(const Contact& contact, double moved) const {
-    return !any() || contact.kind == ContactKind::bar || contact.kind == ContactKind::held ||
-           (moved < farthest_ && inside(contact, moved) > roundings);
+    return !any() || !contact.is_unilateral() || (moved < farthest_ && inside(contact, moved) > roundings);
 }
 
 std::vector<int> ArcBodies::shape(int member) const {
@@ -116,7 +115,8 @@ double ArcBodies::gap(const Contact& pair) const {
         return std::hypot(n.x, n.y) - (radius(pair.i) + radius(pair.j));
     }
     const double x = packing_.coordinate(DiskId(pair.i), pair.j);
-    return (pair.kind == ContactKind::lower_wall ? x : packing_.length(pair.j) - x) - radius(pair.i);
+    const auto wall = wall_coordinate(pair, packing_.layout());
+    return pair.wall().side * ((wall ? packing_.q[*wall] : 0) - x) - radius(pair.i);
 }
 
 bool ArcBodies::is_nearest(const Contact& pair) const {

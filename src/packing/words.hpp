@@ -9,15 +9,13 @@ namespace isostat {
 
 inline constexpr auto wall_kind_words = words_of<WallKind>("absent", "fixed", "movable"); ///< of `WallKind`
 inline constexpr auto load_kind_words = words_of<LoadKind>("nominal", "true");            ///< of `LoadKind`
-inline constexpr std::array lower_wall_names{"left", "bottom", "back"};                   ///< of the axes
-inline constexpr std::array upper_wall_names{"right", "top", "front"};
-inline constexpr std::array axis_names{"x", "y", "z"};
+inline constexpr std::array axis_names{"x", "y", "z"};                                    ///< of the axes
 inline constexpr std::array tilt_names{"xy", "xz", "yz"};
+inline constexpr auto upper_wall_names = Contact(ContactKind::upper_wall, 0, 0).wall().name; ///< of the axes
 
 /// \pre a contact with a wall
 constexpr const char* wall_name(const Contact& contact) {
-    const auto axis = static_cast<std::size_t>(contact.j);
-    return contact.kind == ContactKind::lower_wall ? lower_wall_names[axis] : upper_wall_names[axis];
+    return contact.wall().name[static_cast<std::size_t>(contact.j)];
 }
 
 /// What a grain is called.

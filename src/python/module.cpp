@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <functional>
+#include <map>
 
 namespace isostat::python {
 
@@ -19,6 +21,17 @@ namespace {
 /// An attribute of a Python module of this package.
 py::object ours(const char* file, const char* name) {
     return py::module_::import(file).attr(name);
+}
+
+/// From the number of a wall in pairs (i, j) to its name, the highest number first.
+py::dict wall_names() {
+    std::map<int, const char*, std::greater<>> names;
+    for (const WallFacts& facts : wall_facts) {
+        for (std::size_t a = 0; a < most_axes; ++a) {
+            names.emplace(facts.column[a], facts.name[a]);
+        }
+    }
+    return py::cast(names);
 }
 
 } // namespace
@@ -116,6 +129,7 @@ PYBIND11_MODULE(_core, module) {
     module.doc() = "Compiled part of isostat.";
     module.attr("version") = ISOSTAT_VERSION;
     module.attr("_integer_columns") = pybind11::frozenset(pybind11::cast(isostat::integer_columns()));
+    module.attr("_walls") = wall_names();
     module.def(
         "set_threads",
         [](int count) {

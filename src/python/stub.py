@@ -92,7 +92,7 @@ def stub(core):
             yield from [f"class {name}:", *("    " + line for line in attributes(made)), ""]
         elif callable(made):
             yield from functions(name, made)
-    yield from ["version: str", "_integer_columns: frozenset[str]"]
+    yield from ["version: str", "_integer_columns: frozenset[str]", "_walls: dict[int, str]"]
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 #include "core/dot.hpp"
 #include "core/refuse.hpp"
+#include "io/equilibria.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/text.hpp"
@@ -53,13 +54,8 @@ std::int64_t disk_with_image(const Contact& contact, int disks) {
 /// A contact as in equilibria.csv: two numbers, where walls are -1 to -4 and a held coordinate is (its index, -9).
 void append_contact(Json& list, const Contact& contact, const Packing& packing) {
     list.push_back(contact.i);
-    switch (contact.kind) {
-    case ContactKind::bar:
-    case ContactKind::disk_disk: list.push_back(disk_with_image(contact, packing.disk_count())); break;
-    case ContactKind::lower_wall: list.push_back(-1 - contact.j); break;
-    case ContactKind::upper_wall: list.push_back(-3 - contact.j); break;
-    case ContactKind::held: list.push_back(-9); break;
-    }
+    list.push_back(contact.of_disks() ? disk_with_image(contact, packing.disk_count())
+                                      : contact_columns(contact).second);
 }
 
 /// The forces of an equilibrium in double, or an empty list.

@@ -35,8 +35,8 @@ PerAxis<double> end_of(const Packing& packing, const Contact& contact) {
     if (contact.of_disks()) {
         add_periods(at, packing, contact.image.m);
     } else {
-        at[static_cast<std::size_t>(contact.j)] =
-            contact.kind == ContactKind::lower_wall ? 0 : packing.length(contact.j);
+        const auto wall = wall_coordinate(contact, packing.layout());
+        at[static_cast<std::size_t>(contact.j)] = wall ? packing.q[*wall] : 0;
     }
     return at;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 namespace isostat {
@@ -17,10 +18,10 @@ namespace {
 /// disks with equal levels have the same coordinate along `axis`.
 struct Level {
     int axis;
-    bool upper;
+    std::optional<std::size_t> from; ///< none: from 0
     double value;
     friend bool operator<(const Level& a, const Level& b) {
-        return std::tie(a.value, a.axis, a.upper) < std::tie(b.value, b.axis, b.upper); // the value mostly decides
+        return std::tie(a.value, a.axis, a.from) < std::tie(b.value, b.axis, b.from); // the value mostly decides
     }
     friend bool operator==(const Level& a, const Level& b) = default;
 };
@@ -35,16 +36,17 @@ std::vector<int> shared_levels(const Packing& packing, const std::vector<Contact
             continue;
         }
         const auto i = static_cast<std::size_t>(contact.i);
-        if (contact.kind == ContactKind::lower_wall || contact.kind == ContactKind::upper_wall) {
-            held.push_back({{contact.j, contact.kind == ContactKind::upper_wall, packing.radius[i]},
-                            packing.dimension * contact.i + contact.j});
+        if (contact.is_wall()) {
+            held.push_back(
+                {{contact.j, wall_coordinate(contact, packing.layout()), -contact.wall().side * packing.radius[i]},
+                 packing.dimension * contact.i + contact.j});
         } else if (packing.bars.empty() && contact.i < packing.dimension * disks) {
-            held.push_back({{contact.i % packing.dimension, false, packing.q[i]}, contact.i});
+            held.push_back({{contact.i % packing.dimension, {}, packing.q[i]}, contact.i});
         }
     }
     for (int k = 0; k < packing.dimension * disks && !packing.fixed.empty(); ++k) {
         if (packing.is_fixed(DiskId(k / packing.dimension))) {
-            held.push_back({{k % packing.dimension, false, packing.q[static_cast<std::size_t>(k)]}, k});
+            held.push_back({{k % packing.dimension, {}, packing.q[static_cast<std::size_t>(k)]}, k});
         }
     }
     std::ranges::sort(held);

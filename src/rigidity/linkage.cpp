@@ -109,7 +109,6 @@ class Linkage {
         std::vector<std::pair<std::size_t, int>> way;
     };
 
-    [[nodiscard]] int wall(int axis, bool upper) const { return disks_ + 2 * axis + (upper ? 1 : 0); }
     [[nodiscard]] int axis_of(int wall) const { return (wall - disks_) / 2; }
     [[nodiscard]] bool is_ground(int wall) const {
         const auto axis = static_cast<std::size_t>(axis_of(wall));
@@ -117,7 +116,7 @@ class Linkage {
     }
     [[nodiscard]] std::pair<int, int> ends(std::size_t e) const {
         const Contact& c = touching_[e];
-        return {c.i, c.of_disks() ? c.j : wall(c.j, c.kind == ContactKind::upper_wall)};
+        return {c.i, c.of_disks() ? c.j : disks_ + static_cast<int>(c.wall_number())};
     }
     [[nodiscard]] bool touch(int a, int b) const { return adjacent_.at(a).count(b) != 0; }
     [[nodiscard]] std::size_t edge(int a, int b) const { return adjacent_.at(a).at(b); }

@@ -11,8 +11,8 @@ namespace {
 /// Disks and walls that contacts join.
 struct Group {
     std::vector<unsigned char> disk;
-    PerAxis<bool> lower{};
-    PerAxis<bool> upper{};
+    PerAxis<bool> at_zero{}; ///< walls normal to the axis
+    PerAxis<bool> at_length{};
 
     Group(int disks, const std::vector<Contact>& contacts) : disk(static_cast<std::size_t>(disks), 0) {
         for (const Contact& contact : contacts) {
@@ -21,7 +21,7 @@ struct Group {
             if (contact.of_disks()) {
                 disk[j] = 1;
             } else {
-                (contact.kind == ContactKind::lower_wall ? lower : upper)[j] = true;
+                (contact.wall().at_length ? at_length : at_zero)[j] = true;
             }
         }
     }
@@ -40,8 +40,8 @@ int rigid_motions(const DofMap& dofs, const Group& group) {
     int motions = 0;
     bool rotates = true;
     for (std::size_t axis = 0; axis < plane; ++axis) {
-        bool moves = !group.lower[axis] && (!group.upper[axis] || dofs.dof_of(walls + axis) >= 0);
-        rotates = rotates && !group.lower[axis] && !group.upper[axis];
+        bool moves = !group.at_zero[axis] && (!group.at_length[axis] || dofs.dof_of(walls + axis) >= 0);
+        rotates = rotates && !group.at_zero[axis] && !group.at_length[axis];
         for (std::size_t i = 0; i < group.disk.size(); ++i) {
             if (group.disk[i] != 0 && !counts(dofs, i, axis)) {
                 moves = rotates = false;
@@ -62,7 +62,7 @@ int motions_to_hold(const DofMap& dofs, const Group& group) {
         }
     }
     for (std::size_t axis = 0; axis < plane; ++axis) {
-        free += group.upper[axis] && dofs.dof_of(walls + axis) >= 0 ? 1 : 0;
+        free += group.at_length[axis] && dofs.dof_of(walls + axis) >= 0 ? 1 : 0;
     }
     return free - rigid_motions(dofs, group);
 }

@@ -42,13 +42,13 @@ std::vector<Contact> walls_of(const Packing& packing) {
 /// Names the walls that no disk overlaps, or empty: soft grains press on each, so digits of its position are missing.
 std::string walls_apart(const Packing& packing) {
     std::string out;
-    for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+    for (const WallFacts& facts : wall_facts) {
         for (int axis = 0; axis < packing.dimension; ++axis) {
-            const auto [disk, distance] = nearest_to(packing, kind, axis);
-            if (distance > 0 && !packing.cell.periodic[static_cast<std::size_t>(axis)]) {
+            const auto [disk, distance] = nearest_to(packing, facts.kind, axis);
+            if (distance > 0 && packing.walls.of({facts.kind, 0, axis}) != WallKind::absent) {
                 out += fmt::format("; none with the {} wall, which is {:.3g} from {} {} (are digits of its position "
                                    "rounded?)",
-                                   wall_name({kind, 0, axis}), distance, grain_word(packing.dimension), disk);
+                                   wall_name({facts.kind, 0, axis}), distance, grain_word(packing.dimension), disk);
             }
         }
     }
@@ -58,17 +58,16 @@ std::string walls_apart(const Packing& packing) {
 } // namespace
 
 std::string far_wall(const Packing& packing) {
-    for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+    for (const WallFacts& facts : wall_facts) {
         for (int axis = 0; axis < packing.dimension; ++axis) {
-            const auto a = static_cast<std::size_t>(axis);
-            const WallKind wall = kind == ContactKind::lower_wall ? packing.walls.lower[a] : packing.walls.upper[a];
-            const auto [nearest, distance] = nearest_to(packing, kind, axis);
-            if (wall != WallKind::absent && nearest >= 0 && distance > nearly_touching * packing.min_radius()) {
+            const auto [nearest, distance] = nearest_to(packing, facts.kind, axis);
+            if (packing.walls.of({facts.kind, 0, axis}) != WallKind::absent && nearest >= 0 &&
+                distance > nearly_touching * packing.min_radius()) {
                 const char* grain = grain_word(packing.dimension);
                 return fmt::format("no {} is near the {} wall, the nearest gap is {:.3g} ({} {}): expected the "
                                    "positions of the walls, --box XLO:XHI,YLO:YHI{} (bounds of a file often are not "
                                    "those)",
-                                   grain, wall_name({kind, 0, axis}), distance, grain, nearest,
+                                   grain, wall_name({facts.kind, 0, axis}), distance, grain, nearest,
                                    packing.dimension == plane ? "" : ",ZLO:ZHI");
             }
         }
@@ -126,12 +125,8 @@ std::vector<double> normal_parts(const Packing& packing, const std::vector<Vecto
     double sum = 0, slip = 0;
     std::size_t where = 0, attract = 0;
     for (const auto& [contact, force] : rows) {
-        PerAxis<double> normal{};
-        if (contact.of_disks()) {
-            normal = direction(separation(packing.layout(), packing.q, contact));
-        } else {
-            normal[static_cast<std::size_t>(contact.j)] = contact.kind == ContactKind::lower_wall ? -1 : 1;
-        }
+        const PerAxis<double> normal = contact.of_disks() ? direction(separation(packing.layout(), packing.q, contact))
+                                                          : wall_normal<double>(contact);
         const double part = std::inner_product(force.begin(), force.end(), normal.begin(), 0.0);
         double along = 0;
         for (std::size_t a = 0; a < packing.axes(); ++a) {

@@ -19,25 +19,17 @@ struct Edge {
     }
     /// The contact acts on the sphere equally towards both walls.
     [[nodiscard]] bool presses_alike(const Contact& c, int dimension) const {
-        switch (c.kind) {
-        case ContactKind::disk_disk:
-        case ContactKind::bar: {
+        if (c.of_disks()) {
             const int neighbour = c.i == one.i ? c.j : c.i;
             return neighbour == one.i || (c.i != one.i && c.j != one.i) ||
                    (has(one, neighbour) && has(other, neighbour));
         }
-        case ContactKind::held:
+        if (c.kind == ContactKind::held) {
             return c.i / dimension != one.i || (c.i % dimension != one.j && c.i % dimension != other.j);
-        case ContactKind::lower_wall:
-        case ContactKind::upper_wall: break;
         }
         return c.i != one.i || c == one || c == other || (c.j != one.j && c.j != other.j);
     }
 };
-
-bool is_wall(const Contact& c) {
-    return c.kind == ContactKind::lower_wall || c.kind == ContactKind::upper_wall;
-}
 
 /// The sphere moves, and only contacts act on it.
 bool moves_without_load(const Statics& statics, int sphere) {
@@ -70,8 +62,8 @@ struct Notch {
             Contact mirror = c;
             mirror.i = j;
             level = level ||
-                    (is_wall(c) && c.i == i && c.j != axis && std::ranges::find(contacts, mirror) != contacts.end());
-            const bool along = is_wall(c) ? c.j == axis : c.kind != ContactKind::held || c.i % plane == axis;
+                    (c.is_wall() && c.i == i && c.j != axis && std::ranges::find(contacts, mirror) != contacts.end());
+            const bool along = c.is_wall() ? c.j == axis : c.kind != ContactKind::held || c.i % plane == axis;
             const bool first = is_member(c.kind == ContactKind::held ? c.i / plane : c.i);
             const bool second = c.of_disks() && is_member(c.j);
             const bool own = c.kind == ContactKind::bar && first && second;
@@ -112,13 +104,13 @@ std::vector<EqualForce> equal_in_edge(const Statics& statics, ContactId of) {
     const int dimension = statics.structure().dofs().layout().dimension;
     const Contact& one = contacts[of.index()];
     std::vector<EqualForce> equal;
-    if (!is_wall(one) || statics.is_structural_zero(of) || !moves_without_load(statics, one.i)) {
+    if (!one.is_wall() || statics.is_structural_zero(of) || !moves_without_load(statics, one.i)) {
         return equal;
     }
     for (std::size_t k = 0; k < contacts.size(); ++k) {
         const Contact& other = contacts[k];
         const ContactId mate(k);
-        if (!is_wall(other) || other.i != one.i || other.j == one.j || statics.is_structural_zero(mate)) {
+        if (!other.is_wall() || other.i != one.i || other.j == one.j || statics.is_structural_zero(mate)) {
             continue;
         }
         const Edge edge{contacts, one, other};

@@ -32,12 +32,9 @@ template <class T, class Correction = std::vector<T>> class CorrectedConfigurati
 
     /// F_l of T9: (|x_j - x_i|^2 - D^2) / (2 D), the gap at a wall, the change of a held coordinate. Within 8 unit D.
     [[nodiscard]] T gap_function(const Contact& contact) const {
-        switch (contact.kind) {
-        case ContactKind::disk_disk:
-        case ContactKind::bar: return power(contact) / (number(2) * length(contact));
-        case ContactKind::held: return moved(index(contact.i));
-        default: return wall_gap(contact);
-        }
+        return contact.of_disks()  ? power(contact) / (number(2) * length(contact))
+               : contact.is_wall() ? wall_gap(contact)
+                                   : moved(index(contact.i));
     }
     /// |x_j - x_i|^2 - D^2.
     [[nodiscard]] T power(const Contact& contact) const {
@@ -46,21 +43,23 @@ template <class T, class Correction = std::vector<T>> class CorrectedConfigurati
     }
     /// Gap of a disk and a wall.
     [[nodiscard]] T wall_gap(const Contact& contact) const {
-        const std::size_t k = packing_->layout().of_disk(contact.i) + index(contact.j);
         const double r = packing_->radius[index(contact.i)];
-        return contact.kind == ContactKind::lower_wall
-                   ? arithmetic_.difference(packing_->q[k], r) + moved(k)
-                   : difference(k, packing_->length_at(index(contact.j))) - number(r);
+        if (contact.wall().at_length) {
+            const T x =
+                Separation(contact, packing_->layout())
+                    .of_wall_at_length([](std::size_t coordinate) { return coordinate; },
+                                       [this](std::size_t to, std::size_t from) { return difference(from, to); });
+            return x - number(r);
+        }
+        const std::size_t k = packing_->layout().of_disk(contact.i) + index(contact.j);
+        return arithmetic_.difference(packing_->q[k], r) + moved(k);
     }
     /// Gap of any pair, within 8 unit (|gap| + D) and the rounding of a quotient and a root.
     [[nodiscard]] T gap(const Contact& contact) const {
         using std::sqrt;
-        switch (contact.kind) {
-        case ContactKind::disk_disk:
-        case ContactKind::bar: return power(contact) / (sqrt(square(contact)) + length(contact));
-        case ContactKind::held: return number(0);
-        default: return wall_gap(contact);
-        }
+        return contact.of_disks()  ? power(contact) / (sqrt(square(contact)) + length(contact))
+               : contact.is_wall() ? wall_gap(contact)
+                                   : number(0);
     }
     /// x_j - x_i + A m of two disks: first the stored numbers, as large ones cancel, then the corrections.
     [[nodiscard]] PerAxis<T> separation(const Contact& pair) const {

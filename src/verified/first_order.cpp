@@ -51,15 +51,10 @@ double lost_to_periods(const Layout& layout, const std::vector<double>& v, const
 /// The grains of a contact, disks first, then walls.
 std::array<std::size_t, 2> grains_of(const Contact& c, std::size_t disks) {
     const auto i = static_cast<std::size_t>(c.i);
-    const auto j = static_cast<std::size_t>(c.j);
-    switch (c.kind) {
-    case ContactKind::disk_disk:
-    case ContactKind::bar: return {i, j};
-    case ContactKind::lower_wall: return {i, disks + 2 * j};
-    case ContactKind::upper_wall: return {i, disks + 2 * j + 1};
-    case ContactKind::held: break;
+    if (c.of_disks()) {
+        return {i, static_cast<std::size_t>(c.j)};
     }
-    return {disks, disks};
+    return c.is_wall() ? std::array{i, disks + c.wall_number()} : std::array{disks, disks};
 }
 
 /// Shares of a force and differences of motions below this count as zero: a guess, since the list is counted exactly.

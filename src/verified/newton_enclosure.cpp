@@ -98,9 +98,7 @@ Constraints constraints(const Packing& packing, const std::vector<Contact>& cont
         const auto i = static_cast<std::size_t>(contacts[l].i);
         const Separation separation(contacts[l], packing.layout());
         Constraint found;
-        switch (contacts[l].kind) {
-        case ContactKind::disk_disk:
-        case ContactKind::bar: {
+        if (contacts[l].of_disks()) {
             const auto j = static_cast<std::size_t>(contacts[l].j);
             const Pair d = contacts[l].kind == ContactKind::bar
                                ? Pair{scale * packing.bar_length(contacts[l].i, contacts[l].j)}
@@ -111,22 +109,15 @@ Constraints constraints(const Packing& packing, const std::vector<Contact>& cont
             smallest = std::min(smallest, d.sum);
             ++count[i];
             ++count[j];
-            break;
-        }
-        case ContactKind::lower_wall: {
-            const double f = separation.of_wall(at, std::minus<>()) - scale * radius[i];
-            found = {f, 2 * u * std::abs(f)};
-            break;
-        }
-        case ContactKind::upper_wall: {
+        } else if (contacts[l].is_wall() && contacts[l].wall().at_length) {
             const double length = scale * packing.length(contacts[l].j);
-            const Pair x = separation.of_wall(at, minus);
+            const Pair x = separation.of_wall_at_length(at, minus);
             const Pair sum = exact_sum(x.sum, -(scale * radius[i]));
             const double f = sum.sum + (sum.error + x.error);
             found = {f, 4 * u * std::abs(f) + 0x1p-98 * std::abs(length)}; // bounds.md V4 (Newton step)
-            break;
-        }
-        case ContactKind::held: break;
+        } else if (contacts[l].is_wall()) {
+            const double f = separation.of_wall(at, std::minus<>()) - scale * radius[i];
+            found = {f, 2 * u * std::abs(f)};
         }
         result.f[l] = found.f;
         result.error[l] = found.error;

@@ -29,17 +29,17 @@ PreciseInterval gap_rate(const EnclosedVertex<Real>& vertex, const DofMap& dofs,
         const int dof = dofs.dof_of(coordinate);
         return dof < 0 ? a.number(0) : motion.value[static_cast<std::size_t>(dof)];
     };
+    const auto minus = [](const Real& to, const Real& from) -> Real { return to - from; };
     const UpperBound unknown = separation_weight(pair) * motion.bound;
     const Layout layout = vertex.at().packing().layout();
+    const Separation separation(pair, layout);
     if (!pair.of_disks()) {
         const Real v = component(layout.of_disk(pair.i) + static_cast<std::size_t>(pair.j));
-        const std::size_t wall = layout.of_length(static_cast<std::size_t>(pair.j));
-        const Real rate = pair.kind == ContactKind::lower_wall ? v : component(wall) - v;
+        const Real rate = separation.of_wall(component, minus);
         return {rate, (unknown + a.unit() * (a.size(v) + a.size(rate))).real(), a.bits()};
     }
     const auto x = vertex.at().separation(pair);
-    const Separation separation(pair, layout);
-    const auto w = separation.of_disks(component, [](const Real& to, const Real& from) -> Real { return to - from; });
+    const auto w = separation.of_disks(component, minus);
     Real sum = a.number(0);
     UpperBound speed(0);
     UpperBound size(0);
@@ -141,11 +141,10 @@ Enclosure PreciseFirstOrder::climb(const std::vector<Sum>& approach, const Sum& 
 }
 
 PreciseFirstOrder::Sum PreciseFirstOrder::grown(const std::vector<double>& rho, const Contact& pair) {
-    switch (pair.kind) {
-    case ContactKind::held: return {0, 0};
-    case ContactKind::disk_disk: return {rho[static_cast<std::size_t>(pair.i)], rho[static_cast<std::size_t>(pair.j)]};
-    default: return {rho[static_cast<std::size_t>(pair.i)], 0};
-    }
+    return pair.kind == ContactKind::held
+               ? Sum{0, 0}
+               : Sum{rho[static_cast<std::size_t>(pair.i)],
+                     pair.kind == ContactKind::disk_disk ? rho[static_cast<std::size_t>(pair.j)] : 0};
 }
 
 Enclosure PreciseFirstOrder::rate(ContactId opened, int direction, const Contact& pair) {

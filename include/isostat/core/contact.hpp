@@ -7,6 +7,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace isostat {
 
@@ -61,6 +62,22 @@ using ContactId = Id<struct ContactTag>;
 /// there (proofs/stability.md, S3) or because a free motion begins there (proofs/clumps.md).
 enum class ContactKind : std::uint8_t { disk_disk, bar, lower_wall, upper_wall, held };
 
+/// What is true of all walls of a kind: all of them are flat, normal to an axis, and stand at 0 or at L of that axis.
+struct WallFacts {
+    ContactKind kind;
+    int side;                  ///< -1: the grains that touch the wall are above, +1: they are below
+    bool at_length;            ///< the wall stands at L
+    PerAxis<const char*> name; ///< of the wall normal to an axis, in files, options and messages
+    PerAxis<int> column;       ///< the same wall in the second column of a contact in equilibria.csv
+};
+/// In the order of the kinds.
+inline constexpr std::array wall_facts{
+    WallFacts{ContactKind::lower_wall, -1, false, {"left", "bottom", "back"}, {-1, -2, -5}},
+    WallFacts{ContactKind::upper_wall, +1, true, {"right", "top", "front"}, {-3, -4, -6}},
+};
+static_assert(static_cast<std::size_t>(ContactKind::held) - static_cast<std::size_t>(ContactKind::lower_wall) ==
+              wall_facts.size());
+
 /// Which image of a disk in a periodic cell: m_a periods further along the period vector a. All 0 in a box.
 struct Image {
     std::array<std::int8_t, 3> m{}; // exact: axes, tilts and coordinates of an image in three dimensions
@@ -91,6 +108,17 @@ struct Contact {
         : kind(what), image(of_second), i(first), j(second) {}
     /// The contact or bar joins two disks, and j is a disk.
     [[nodiscard]] constexpr bool of_disks() const { return kind <= ContactKind::bar; }
+    /// The contact is with a wall, and j is the axis of the wall.
+    [[nodiscard]] constexpr bool is_wall() const { return kind > ContactKind::bar && kind < ContactKind::held; }
+    /// \pre `is_wall()`
+    [[nodiscard]] constexpr const WallFacts& wall() const {
+        return wall_facts[static_cast<std::size_t>(kind) - static_cast<std::size_t>(ContactKind::lower_wall)];
+    }
+    /// The number of the body that the wall belongs to: 2 j of what stands at 0, 2 j + 1 of what stands at L_j.
+    /// \pre `is_wall()`
+    [[nodiscard]] constexpr std::size_t wall_number() const {
+        return 2 * static_cast<std::size_t>(j) + (wall().at_length ? 1 : 0);
+    }
     /// A row of which the force is not negative and which may open.
     [[nodiscard]] constexpr bool is_unilateral() const { return kind != ContactKind::bar && kind != ContactKind::held; }
     friend constexpr bool operator==(const Contact& a, const Contact& b) {
@@ -107,6 +135,13 @@ struct Contact {
         return second != 0 ? second : a.image <=> b.image;
     }
 };
+
+/// The coordinate at which the wall of a contact stands; none: the wall stands at 0, or there is no wall.
+constexpr std::optional<std::size_t> wall_coordinate(const Contact& contact, const Layout& layout) {
+    return contact.is_wall() && contact.wall().at_length
+               ? std::optional(layout.of_length(static_cast<std::size_t>(contact.j)))
+               : std::nullopt;
+}
 
 /// Two disks in the canonical order of a pair.
 constexpr Contact pair_of(int i, int j, Image image = {}) {

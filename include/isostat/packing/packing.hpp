@@ -77,6 +77,20 @@ enum class WallKind : unsigned char { absent, fixed, movable };
 struct Walls {
     PerAxis<WallKind> lower{};
     PerAxis<WallKind> upper{};
+    /// The state of the wall of a contact. \pre the contact is with a wall
+    [[nodiscard]] constexpr WallKind of(const Contact& contact) const {
+        return (contact.kind == ContactKind::lower_wall ? lower : upper)[static_cast<std::size_t>(contact.j)];
+    }
+    /// Calls visit(contact) for a disk and every wall that is there, axis after axis.
+    template <class Visit> void for_each(int dimension, int disk, Visit visit) const {
+        for (int a = 0; a < dimension; ++a) {
+            for (const WallFacts& wall : wall_facts) {
+                if (const Contact contact(wall.kind, disk, a); of(contact) != WallKind::absent) {
+                    visit(contact);
+                }
+            }
+        }
+    }
     /// The paper's box: a fixed lower and a movable upper wall on each axis.
     static Walls box(int dimension = 2);
     /// No walls at all (free clusters).

@@ -11,10 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ._core import ExactPacking, Packing, State
+from ._core import ExactPacking, Packing, State, _walls
 from ._words import BadInput, NotIsostatic
-
-_walls = {-1: "left", -2: "bottom", -3: "right", -4: "top", -5: "back", -6: "front"}
 
 
 def contact_pair(contact: Sequence[Any]) -> tuple[int, int]:

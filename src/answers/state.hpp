@@ -3,8 +3,8 @@
 /// The output of `inspect` for a state, of a periodic cell, of a box, and of a vertex where more pairs touch than its
 /// contacts.
 
+#include "answers/answer.hpp"
 #include "certificate/jammed_box.hpp"
-#include "io/json.hpp"
 #include "snap/untold.hpp"
 
 #include <isostat/certificate/certify.hpp>
@@ -20,21 +20,19 @@ namespace isostat::answers {
 /// "15.4 x 14.8, tilt 0; x, y move, disk 0 is pinned".
 std::string cell_words(const Packing& packing);
 
-/// Counts of the stored coordinates, one row for each way to strain the cell.
-void print_counts(std::string& out, const std::string& title, const StrainCounts& counts);
+/// Counts of the stored coordinates, one row for each way to strain the cell, under a title; returns their values.
+Json add_counts(Answer& out, const std::string& title, const StrainCounts& counts);
 
-void print_box(std::string& out, const Packing& packing, const BoxInspection& box);
-json::Json box_json(const BoxInspection& box);
+/// `box`, with the walls held.
+void add_box(Answer& out, const Packing& packing, const BoxInspection& box);
 
-/// Prints the counts side by side, the words of jamming, and the count of contacts that elastic moduli need.
-void print_cell(std::string& out, const CellInspection& cell);
-json::Json cell_json(const Packing& packing, const CellInspection& cell);
+/// `cell`: the counts side by side, the words of jamming, and the count of contacts that elastic moduli need.
+void add_cell(Answer& out, const Packing& packing, const CellInspection& cell);
 
-/// For a state that a run left with touching pairs besides its contacts: their names, and the ranges of forces that are
-/// not unique. For contacts that the run left at force 0: their names. Nothing when the state names no such pair.
-void print_face(std::string& out, const State& state);
-/// `face`: `h`, `touching`, `self_stresses`, `forces_between`, or `undecided` with the reason; `left_at_zero`.
-void add_face(json::Json& object, const State& state);
+/// For a state that a run left with touching pairs besides its contacts: `face`, their names, and the ranges of forces
+/// that are not unique, or why these are `undecided`. For contacts that the run left at force 0: `left_at_zero`, their
+/// names. Nothing when the state names no such pair.
+void add_face(Answer& out, const State& state);
 
 /// What is proved of a state. Verdicts that the rounding of its file leaves open are withheld.
 struct StateAnswer {
@@ -52,9 +50,7 @@ struct StateAnswer {
 /// \p singular_values: how many; absent: ten for spheres, 0 for disks. \pre the file outlives the answer
 StateAnswer answer_of(const StateFile& file, std::optional<int> singular_values);
 
-/// \p each_force: prints every force too.
-std::string to_text(const StateAnswer& answer, bool each_force);
-/// \p file: its name.
-json::Json to_json(const StateAnswer& answer, const std::string& file);
+/// \p file: its name. \p each_force: the text has every force too. \p lists: as in `Answer`.
+Answer to_answer(const StateAnswer& answer, const std::string& file, bool each_force, bool lists);
 
 } // namespace isostat::answers

@@ -1,6 +1,5 @@
 #include "answers/state.hpp"
 #include "core/decimal.hpp"
-#include "io/text.hpp"
 #include "packing/words.hpp"
 
 #include <fmt/format.h>
@@ -9,10 +8,6 @@
 #include <span>
 
 namespace isostat::answers {
-
-using json::Json;
-using json::or_null;
-using text::say;
 
 namespace {
 
@@ -44,26 +39,21 @@ std::string marked(int value, const Counting& c) {
     return fmt::format("{}{}", c.rank_exact == Verdict::proved ? "" : "<=", value);
 }
 
-void print_answer(std::string& out, const char* title, const JammingAnswer& answer) {
-    say(out, "{:<24} {}: {}\n", title, to_string(answer.verdict), answer.reason);
+/// One word of jamming: `jammed.NAME` in JSON.
+void add_answer(Answer& out, const char* name, const JammingAnswer& answer) {
+    out.line(fmt::format("jammed {}ly", name), "{}: {}", to_string(answer.verdict), answer.reason);
+    Json& jammed = out.json["jammed"][name];
+    jammed = {{"verdict", to_string(answer.verdict)}, {"reason", answer.reason}};
     if (answer.verdict == Verdict::undecided && answer.if_closed) {
         const JammedIfClosed& seen = *answer.if_closed;
-        say(out,
-            "  if contacts close      {}, of each packing within {} of these coordinates in which the {} contacts all "
-            "close{}; whether there is one is not asked\n",
-            to_string(seen.verdict), rounded_down(seen.within, 2), seen.contacts,
-            seen.verdict == Verdict::refuted ? " and no other pair touches" : "");
+        jammed["if_contacts_close"] = {
+            {"verdict", to_string(seen.verdict)}, {"contacts", seen.contacts}, {"within", or_null(seen.within)}};
+        out.line("  if contacts close",
+                 "{}, of each packing within {} of these coordinates in which the {} contacts all "
+                 "close{}; whether there is one is not asked",
+                 to_string(seen.verdict), rounded_down(seen.within, 2), seen.contacts,
+                 seen.verdict == Verdict::refuted ? " and no other pair touches" : "");
     }
-}
-
-Json jammed_json(const JammingAnswer& answer) {
-    Json out{{"verdict", to_string(answer.verdict)}, {"reason", answer.reason}};
-    if (answer.verdict == Verdict::undecided && answer.if_closed) {
-        out["if_contacts_close"] = {{"verdict", to_string(answer.if_closed->verdict)},
-                                    {"contacts", answer.if_closed->contacts},
-                                    {"within", or_null(answer.if_closed->within)}};
-    }
-    return out;
 }
 
 } // namespace
@@ -82,64 +72,50 @@ std::string cell_words(const Packing& packing) {
                        grain_word(packing.dimension), packing.cell.pin);
 }
 
-void print_counts(std::string& out, const std::string& title, const StrainCounts& counts) {
-    say(out, "{:<24} {:>7} {:>7} {:>7} {:>6} {:>6}\n", title, "N_f", "N", "rank", "h", "k");
+Json add_counts(Answer& out, const std::string& title, const StrainCounts& counts) {
+    out.line(title, "{:>7} {:>7} {:>7} {:>6} {:>6}", "N_f", "N", "rank", "h", "k");
     for (std::size_t k = 0; k < strains.size(); ++k) {
         const Counting& c = counts[k];
-        say(out, "  {:<22} {:>7} {:>7} {:>7} {:>6} {:>6}\n", to_string(strains[k]), c.dof_count, c.contact_count,
-            c.rank, marked(c.hyperstaticity, c), marked(c.mechanisms, c));
+        out.line(fmt::format("  {}", to_string(strains[k])), "{:>7} {:>7} {:>7} {:>6} {:>6}", c.dof_count,
+                 c.contact_count, c.rank, marked(c.hyperstaticity, c), marked(c.mechanisms, c));
     }
+    return json::counts(counts);
 }
 
-void print_cell(std::string& out, const CellInspection& cell) {
+void add_cell(Answer& out, const Packing& packing, const CellInspection& cell) {
     const char* const grain = grain_word(cell.dimension);
-    print_counts(out, fmt::format("all {}s", grain), cell.all);
+    Answer in;
+    in.item("moves", moving(packing.cell));
+    in.item("tilt", packing.dimension == plane ? or_null(packing.lattice(0, 1)) : Json(tilts_of(packing)));
+    in.item("all", add_counts(in, fmt::format("all {}s", grain), cell.all));
+    in.item("backbone_disks", cell.backbone_disks);
+    in.item("backbone", nullptr);
     if (cell.backbone) {
-        print_counts(out, fmt::format("backbone, {} {}s", cell.backbone_disks, grain), *cell.backbone);
-        say(out, "{:<24} {} for a bulk modulus, {} for all moduli (Goodrich et al., by counting); here {}\n",
-            "contacts needed", contacts_for_bulk_modulus(cell.backbone_disks, cell.dimension),
-            contacts_for_all_moduli(cell.backbone_disks, cell.dimension), (*cell.backbone)[0].contact_count);
+        const auto bulk = contacts_for_bulk_modulus(cell.backbone_disks, cell.dimension);
+        const auto all = contacts_for_all_moduli(cell.backbone_disks, cell.dimension);
+        in.item("backbone",
+                add_counts(in, fmt::format("backbone, {} {}s", cell.backbone_disks, grain), *cell.backbone));
+        in.item("contacts_for_bulk_modulus", bulk);
+        in.item("contacts_for_all_moduli", all, "contacts needed",
+                "{} for a bulk modulus, {} for all moduli (Goodrich et al., by counting); here {}", bulk, all,
+                (*cell.backbone)[0].contact_count);
     }
-    print_answer(out, "jammed locally", cell.local);
-    print_answer(out, "jammed collectively", cell.collective);
-    print_answer(out, "jammed strictly", cell.strict);
+    add_answer(in, "local", cell.local);
+    add_answer(in, "collective", cell.collective);
+    add_answer(in, "strict", cell.strict);
+    out.part("cell", std::move(in));
 }
 
-void print_box(std::string& out, const Packing& packing, const BoxInspection& box) {
+void add_box(Answer& out, const Packing& packing, const BoxInspection& box) {
     const Counting& c = box.counting;
-    say(out, "{:<24} N_f = {}, N = {}, h = {}, k = {} of {} {}s that are no rattlers by coordination\n", "walls held",
-        c.dof_count, c.contact_count, marked(c.hyperstaticity, c), marked(c.mechanisms, c), box.grains,
-        grain_word(packing.dimension));
-    print_answer(out, "jammed collectively", box.collective);
-}
-
-Json box_json(const BoxInspection& box) {
-    Json out{{"grains", box.grains}};
-    out.update(json::counts(box.counting));
-    out["jammed"]["collective"] = jammed_json(box.collective);
-    return out;
-}
-
-Json cell_json(const Packing& packing, const CellInspection& cell) {
-    Json out;
-    out["moves"] = moving(packing.cell);
-    if (packing.dimension == plane) {
-        out["tilt"] = or_null(packing.lattice(0, 1));
-    } else {
-        out["tilt"] = tilts_of(packing);
-    }
-    out["all"] = json::counts(cell.all);
-    out["backbone_disks"] = cell.backbone_disks;
-    out["backbone"] = cell.backbone ? json::counts(*cell.backbone) : Json();
-    for (const auto& [name, answer] : {std::pair("local", &cell.local), std::pair("collective", &cell.collective),
-                                       std::pair("strict", &cell.strict)}) {
-        out["jammed"][name] = jammed_json(*answer);
-    }
-    if (cell.backbone) {
-        out["contacts_for_bulk_modulus"] = contacts_for_bulk_modulus(cell.backbone_disks, cell.dimension);
-        out["contacts_for_all_moduli"] = contacts_for_all_moduli(cell.backbone_disks, cell.dimension);
-    }
-    return out;
+    Answer in;
+    in.json = json::counts(c);
+    in.item("grains", box.grains, "walls held",
+            "N_f = {}, N = {}, h = {}, k = {} of {} {}s that are no rattlers by coordination", c.dof_count,
+            c.contact_count, marked(c.hyperstaticity, c), marked(c.mechanisms, c), box.grains,
+            grain_word(packing.dimension));
+    add_answer(in, "collective", box.collective);
+    out.part("box", std::move(in));
 }
 
 } // namespace isostat::answers

@@ -1,5 +1,4 @@
 #include "answers/state.hpp"
-#include "io/text.hpp"
 #include "preparation/force_face.hpp"
 
 #include <fmt/format.h>
@@ -8,10 +7,6 @@
 #include <algorithm>
 
 namespace isostat::answers {
-
-using json::Json;
-using json::or_null;
-using text::say;
 
 namespace {
 
@@ -36,21 +31,8 @@ Result<ForceFace> face_of(const State& state) {
     return force_face(state.packing, state.load, state.contacts, touching);
 }
 
-void print_ends(std::string& out, const ForceFace& face, int dimension) {
-    for (std::size_t l = 0; l < face.pairs.size(); ++l) {
-        if (takes_part(face, l)) {
-            say(out, "  force {:<16} from {:.6g} to {:.6g}\n", to_string(face.pairs[l], dimension), face.least[l],
-                face.most[l]);
-        }
-    }
-    say(out, "  (the run found that these touch; the ends are computed in double, not proved)\n");
-}
-
-Json face_json(const Result<ForceFace>& result, int dimension) {
-    if (!result.ok()) {
-        return {{"undecided", result.failure().message(dimension)}};
-    }
-    const ForceFace& face = result.value();
+/// The self-stresses, and the ranges of the forces that they change.
+void add_ends(Answer& out, const ForceFace& face, int dimension) {
     Json stresses = Json::array();
     for (const std::vector<double>& stress : face.self_stresses) {
         Json one;
@@ -64,48 +46,43 @@ Json face_json(const Result<ForceFace>& result, int dimension) {
     Json between = Json::array();
     for (std::size_t l = 0; l < face.pairs.size(); ++l) {
         if (takes_part(face, l)) {
-            between.push_back({to_string(face.pairs[l], dimension), or_null(face.least[l]), or_null(face.most[l])});
+            const std::string name = to_string(face.pairs[l], dimension);
+            between.push_back({name, or_null(face.least[l]), or_null(face.most[l])});
+            say(out.text, "  force {:<16} from {:.6g} to {:.6g}\n", name, face.least[l], face.most[l]);
         }
     }
-    return {{"h", face.self_stresses.size()},
-            {"self_stresses", std::move(stresses)},
-            {"forces_between", std::move(between)},
-            {"proved", false}};
+    say(out.text, "  (the run found that these touch; the ends are computed in double, not proved)\n");
+    out.json.update({{"h", face.self_stresses.size()},
+                     {"self_stresses", std::move(stresses)},
+                     {"forces_between", std::move(between)},
+                     {"proved", false}});
 }
 
 } // namespace
 
-void print_face(std::string& out, const State& state) {
+void add_face(Answer& out, const State& state) {
     if (!state.perturbation) {
         return;
     }
-    if (!state.perturbation->open.empty()) {
-        say(out, "touching besides         {}: {} self-stresses, the forces above are one choice of many\n",
-            fmt::format("{}", fmt::join(names_of(state.perturbation->open, state.packing.dimension), ", ")),
-            state.perturbation->open.size());
-        const Result<ForceFace> face = face_of(state);
-        if (face.ok()) {
-            print_ends(out, face.value(), state.packing.dimension);
+    const int dimension = state.packing.dimension;
+    if (const std::vector<std::string> names = names_of(state.perturbation->open, dimension); !names.empty()) {
+        Answer part;
+        part.item("touching", names, "touching besides",
+                  "{}: {} self-stresses, the forces above are one choice of many",
+                  fmt::format("{}", fmt::join(names, ", ")), names.size());
+        if (const Result<ForceFace> face = face_of(state); face.ok()) {
+            add_ends(part, face.value(), dimension);
         } else {
-            say(out, "  {}: {}\n", to_string(face.failure().kind), face.failure().message(state.packing.dimension));
+            const std::string reason = face.failure().message(dimension);
+            part.item("undecided", reason);
+            say(part.text, "  {}: {}\n", to_string(face.failure().kind), reason);
         }
+        out.part("face", std::move(part));
     }
-    if (!state.perturbation->zero.empty()) {
-        say(out, "left at force 0          {}: an equilibrium of the finite loads, whatever infinitesimal ones do\n",
-            fmt::format("{}", fmt::join(names_of(state.perturbation->zero, state.packing.dimension), ", ")));
-    }
-}
-
-void add_face(Json& object, const State& state) {
-    if (!state.perturbation) {
-        return;
-    }
-    if (!state.perturbation->open.empty()) {
-        object["face"] = face_json(face_of(state), state.packing.dimension);
-        object["face"]["touching"] = names_of(state.perturbation->open, state.packing.dimension);
-    }
-    if (!state.perturbation->zero.empty()) {
-        object["left_at_zero"] = names_of(state.perturbation->zero, state.packing.dimension);
+    if (const std::vector<std::string> names = names_of(state.perturbation->zero, dimension); !names.empty()) {
+        out.item("left_at_zero", names, "left at force 0",
+                 "{}: an equilibrium of the finite loads, whatever infinitesimal ones do",
+                 fmt::format("{}", fmt::join(names, ", ")));
     }
 }
 

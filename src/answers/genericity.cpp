@@ -3,7 +3,6 @@
 #include "contact/words.hpp"
 #include "core/refuse.hpp"
 #include "io/files.hpp"
-#include "io/text.hpp"
 #include "io/vertex_text.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
@@ -22,9 +21,6 @@ namespace isostat::answers {
 
 using crafted::Genericity;
 using crafted::GenericitySample;
-using json::Json;
-using json::or_null;
-using text::say;
 
 namespace {
 
@@ -148,46 +144,76 @@ GenericityOriginal read_original(const std::string& file) {
     return out;
 }
 
-std::string head_text(const GenericityAnswer& a) {
-    std::string out;
-    const char* bound = a.original.exact == Verdict::proved ? "=" : "<=";
-    say(out, "{}: {} {}s, N = {} ({}), h {} {}, k {} {}, rank with radii{} {} {}\n", a.file,
-        a.original.packing.disk_count(), grain_word(a.original.packing.dimension), a.original.contacts.size(),
-        a.original.title, bound, a.original.hyperstaticity, bound, a.original.mechanisms,
-        a.original.packing.bars.empty() ? "" : " and places of members",
-        a.original.with_radii.rank_exact == Verdict::proved ? "=" : ">=", a.original.with_radii.rank);
-    say(out, "radius times 1 + size u, u uniform in [-1, 1){}{}; {} samples, seeds {} to {}{}\n\n",
+Answer head_of(const GenericityAnswer& a) {
+    Answer out;
+    const GenericityOriginal& original = a.original;
+    const bool exact = original.exact == Verdict::proved;
+    const bool clumps = !original.packing.bars.empty();
+    out.json = {{"file", a.file},
+                {"seed", a.options.seed},
+                {"samples", a.options.samples},
+                {"stress", or_null(a.options.stress)},
+                {"keep_equal", a.options.keep_equal},
+                {"tilt", a.options.tilt}};
+    out.item("original", {{"N", original.contacts.size()},
+                          {"h", original.hyperstaticity},
+                          {"k", original.mechanisms},
+                          {"rank_exact", to_string(original.exact)},
+                          {"rank_with_radii", original.with_radii.rank},
+                          {"rank_with_radii_exact", to_string(original.with_radii.rank_exact)}});
+    out.item("sizes", Json::array());
+    say(out.text, "{}: {} {}s, N = {} ({}), h {} {}, k {} {}, rank with radii{} {} {}\n", a.file,
+        original.packing.disk_count(), grain_word(original.packing.dimension), original.contacts.size(), original.title,
+        exact ? "=" : "<=", original.hyperstaticity, exact ? "=" : "<=", original.mechanisms,
+        clumps ? " and places of members" : "",
+        original.with_radii.rank_exact == Verdict::proved ? "=" : ">=", original.with_radii.rank);
+    say(out.text, "radius times 1 + size u, u uniform in [-1, 1){}{}; {} samples, seeds {} to {}{}\n\n",
         a.options.keep_equal ? ", the same u for equal radii" : "",
         a.options.tilt ? "; tilt plus size u times the first period" : "", a.options.samples, a.options.seed,
         a.options.seed + static_cast<std::uint64_t>(a.options.samples) - 1,
-        a.original.packing.bars.empty() || a.options.keep_equal ? "" : "; members move by their radii times size u");
-    say(out, "{:>8} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9} {:>9} {:>9} {:>9} {:>9} | {}\n", "size",
-        "h=k=0", "tie", "undecided", "failed", "lists", "largest", "within", "rattlers", "min force", "median",
+        clumps && !a.options.keep_equal ? "; members move by their radii times size u" : "");
+    say(out.text, "{:>8} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9} {:>9} {:>9} {:>9} {:>9} | {}\n",
+        "size", "h=k=0", "tie", "undecided", "failed", "lists", "largest", "within", "rattlers", "min force", "median",
         "min gap", "median", "min sigma", "arithmetic");
     return out;
 }
 
-std::string row_text(const Genericity& result, double size) {
-    const auto force = spread(result, [](const GenericitySample& s) { return s.min_force; });
-    const auto gap = spread(result, [](const GenericitySample& s) { return s.min_gap; });
-    const auto sigma = spread(result, [](const GenericitySample& s) { return s.sigma_min; });
-    const auto rattlers = spread(result, [](const GenericitySample& s) { return s.rattlers; });
-    const auto turns = spread(result, [](const GenericitySample& s) { return s.turns; });
-    std::string used;
-    for (const auto& [rung, count] : result.rungs()) {
-        used += fmt::format("{}{} {}", used.empty() ? "" : ", ", rung, count);
+Answer row_of(const GenericityAnswer& a, const Genericity& result, double size) {
+    Answer out;
+    out.json = {{"size", size},
+                {"proved_isostatic", result.proved},
+                {"ties", result.ties},
+                {"undecided", result.undecided},
+                {"failed", result.failed},
+                {"within_original", result.within()},
+                {"rungs", result.rungs()},
+                {"distinct_networks", result.lists.size()},
+                {"networks", Json::array()},
+                {"samples", json::array_of(result.samples, sample_json)}};
+    for (std::size_t k = 0; k < result.lists.size() && k < a.lists; ++k) {
+        out.json["networks"].push_back(
+            {{"samples", result.lists[k].samples},
+             {"contacts", contact_names(result.lists[k].contacts, a.original.packing.dimension)}});
     }
-    if (result.proved == 0) {
-        return text::filled("{:>8.1e} {:>7} {:>5} {:>9} {:>6}\n", size, 0, result.ties, result.undecided,
-                            result.failed);
+    say(out.text, "{:>8.1e} {:>7} {:>5} {:>9} {:>6}", size, result.proved, result.ties, result.undecided,
+        result.failed);
+    if (result.proved > 0) {
+        const auto force = spread(result, [](const GenericitySample& s) { return s.min_force; });
+        const auto gap = spread(result, [](const GenericitySample& s) { return s.min_gap; });
+        const auto sigma = spread(result, [](const GenericitySample& s) { return s.sigma_min; });
+        const auto rattlers = spread(result, [](const GenericitySample& s) { return s.rattlers; });
+        const auto turns = spread(result, [](const GenericitySample& s) { return s.turns; });
+        std::string used;
+        for (const auto& [rung, count] : result.rungs()) {
+            used += fmt::format("{}{} {}", used.empty() ? "" : ", ", rung, count);
+        }
+        say(out.text, " | {:>6} {:>7} {:>9} {:>8} | {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} | {}{}",
+            result.lists.size(), result.lists.front().samples, result.within(),
+            fmt::format("{}..{}", rattlers[0], rattlers[2]), force[0], force[1], gap[0], gap[1], sigma[0], used,
+            turns[2] > 0 ? fmt::format("; rotational rattlers turn: {}..{}", turns[0], turns[2]) : "");
     }
-    return text::filled(
-        "{:>8.1e} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} "
-        "{:>9.2e} | {}\n",
-        size, result.proved, result.ties, result.undecided, result.failed, result.lists.size(),
-        result.lists.front().samples, result.within(), fmt::format("{}..{}", rattlers[0], rattlers[2]), force[0],
-        force[1], gap[0], gap[1], sigma[0],
-        used + (turns[2] > 0 ? fmt::format("; rotational rattlers turn: {}..{}", turns[0], turns[2]) : ""));
+    out.text += "\n";
+    return out;
 }
 
 std::string closing_text(const GenericityAnswer& a, const std::vector<Genericity>& results,
@@ -204,42 +230,6 @@ std::string closing_text(const GenericityAnswer& a, const std::vector<Genericity
         print_failures(out, results[s], sizes[s]);
     }
     return out;
-}
-
-Json to_json(const GenericityAnswer& a, const Genericity& result, double size) {
-    Json out;
-    out["size"] = size;
-    out["proved_isostatic"] = result.proved;
-    out["ties"] = result.ties;
-    out["undecided"] = result.undecided;
-    out["failed"] = result.failed;
-    out["within_original"] = result.within();
-    out["rungs"] = result.rungs();
-    out["distinct_networks"] = result.lists.size();
-    Json lists = Json::array();
-    for (std::size_t k = 0; k < result.lists.size() && k < a.lists; ++k) {
-        lists.push_back({{"samples", result.lists[k].samples},
-                         {"contacts", contact_names(result.lists[k].contacts, a.original.packing.dimension)}});
-    }
-    out["networks"] = std::move(lists);
-    out["samples"] = json::array_of(result.samples, sample_json);
-    return out;
-}
-
-void add_genericity(Json& out, const GenericityAnswer& a, Json results) {
-    out["file"] = a.file;
-    out["seed"] = a.options.seed;
-    out["samples"] = a.options.samples;
-    out["stress"] = or_null(a.options.stress);
-    out["keep_equal"] = a.options.keep_equal;
-    out["tilt"] = a.options.tilt;
-    out["original"] = {{"N", a.original.contacts.size()},
-                       {"h", a.original.hyperstaticity},
-                       {"k", a.original.mechanisms},
-                       {"rank_exact", to_string(a.original.exact)},
-                       {"rank_with_radii", a.original.with_radii.rank},
-                       {"rank_with_radii_exact", to_string(a.original.with_radii.rank_exact)}};
-    out["sizes"] = std::move(results);
 }
 
 std::string csv_rows(const Genericity& result, double size) {

@@ -2,8 +2,8 @@
 /// \file
 /// The output of `genericity`.
 
+#include "answers/answer.hpp"
 #include "crafted/genericity.hpp"
-#include "io/json.hpp"
 
 #include <isostat/packing/packing.hpp>
 #include <isostat/rigidity/counting.hpp>
@@ -35,15 +35,12 @@ struct GenericityAnswer {
     std::size_t lists = 0; ///< largest number of lists shown for each size
 };
 
-/// Text: its head, a row for each size, and the most frequent lists and the failures of all.
-std::string head_text(const GenericityAnswer& answer);
-std::string row_text(const crafted::Genericity& result, double size);
+/// What was asked and the unperturbed packing, with an empty list of `sizes`; the answer for one size; and, as text
+/// alone, the most frequent lists and the failures of all sizes.
+Answer head_of(const GenericityAnswer& answer);
+Answer row_of(const GenericityAnswer& answer, const crafted::Genericity& result, double size);
 std::string closing_text(const GenericityAnswer& answer, const std::vector<crafted::Genericity>& results,
                          std::span<const double> sizes);
-
-/// JSON: one size, and all of them.
-json::Json to_json(const GenericityAnswer& answer, const crafted::Genericity& result, double size);
-void add_genericity(json::Json& object, const GenericityAnswer& answer, json::Json results);
 
 inline constexpr const char* genericity_head =
     "size,seed,result,h,k,carrying,rattlers,min_force,min_gap,sigma_min,within_original\n";

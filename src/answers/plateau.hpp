@@ -2,7 +2,7 @@
 /// \file
 /// The output of `plateau`.
 
-#include "io/json.hpp"
+#include "answers/answer.hpp"
 
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/foreign/foreign.hpp>
@@ -30,8 +30,8 @@ struct PlateauAnswer {
     std::array<double, 2> thresholds;
 };
 
-std::string to_text(const PlateauAnswer& answer);
-void add_plateau(json::Json& object, const PlateauAnswer& answer);
+/// \p lists: as in `Answer`.
+Answer to_answer(const PlateauAnswer& answer, bool lists);
 
 inline constexpr const char* plateau_head =
     "threshold,candidates,rattlers,N_f,N,rank,h,k,rank_exact,isostatic,all_N_f,all_N,"

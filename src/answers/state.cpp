@@ -2,7 +2,6 @@
 
 #include "certificate/averages.hpp"
 #include "core/decimal.hpp"
-#include "io/text.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
@@ -17,10 +16,6 @@
 #include <span>
 
 namespace isostat::answers {
-
-using json::Json;
-using json::or_null;
-using text::say;
 
 namespace {
 
@@ -42,39 +37,47 @@ Json numbers(std::span<const double> values) {
     return json::array_of(values, or_null);
 }
 
-std::string bodies_text(int count) {
-    return fmt::format(" in {} {}", count, count == 1 ? "body" : "bodies");
-}
-
-void print_counting(std::string& out, const State& state, const Counting& c) {
-    say(out, "{:<25}{}{}\n", fmt::format("{}s", grain_word(state.packing.dimension)), state.packing.disk_count(),
-        state.packing.bars.empty() ? "" : bodies_text(Bodies(state.packing).count()));
-    const bool periodic = state.packing.cell.any();
-    say(out, "{:<25}{}, solid fraction {:.6f}\n", periodic ? "cell" : "box",
-        periodic ? cell_words(state.packing) : fmt::format("{}", fmt::join(lengths_of(state), " x ")),
-        state.packing.solid_fraction());
-    const auto shears = std::span(state.load.shear).first(state.packing.tilts());
-    const bool sheared = std::ranges::any_of(shears, [](double shear) { return shear != 0; });
-    say(out, "load                     sigma = ({}){}, {}\n", fmt::format("{}", fmt::join(stresses_of(state), ", ")),
-        sheared ? fmt::format(", shear {}", fmt::join(shears, ", ")) : "",
-        state.load.kind != LoadKind::nominal ? "true stresses"
-        : state.packing.cell.keeps_shape ? fmt::format("along {}; on the size of the cell, it scales all forces alike",
-                                                       axis_names[state.packing.axes() - 1])
-        : periodic                       ? "nominal (constant forces on the periods)"
-                                         : "nominal (constant wall forces)");
-    if (state.load.path) {
-        const auto list = [&](const StressRates& all) {
-            return fmt::format("{}", fmt::join(of_path(state, all), ", "));
-        };
-        say(out, "loaded                   t = {}: sigma = ({}) + t ({})\n", state.load.path->t,
-            list(state.load.path->at), list(state.load.path->rate));
+/// What a state holds, and the counts of its stored coordinates.
+void add_counting(Answer& out, const State& state, const Counting& c) {
+    const Packing& packing = state.packing;
+    const std::string grains = fmt::format("{}s", grain_word(packing.dimension));
+    std::string bodies;
+    if (!packing.bars.empty()) {
+        const int count = Bodies(packing).count();
+        out.item("bodies", count);
+        bodies = fmt::format(" in {} {}", count, count == 1 ? "body" : "bodies");
     }
-    say(out, "degrees of freedom N_f   {}\n", c.dof_count);
-    say(out, "contacts N               {}\n", c.contact_count);
-    say(out, "rank, stored coordinates {} ({})\n", c.rank,
-        c.rank_exact == Verdict::proved ? "exact" : "proved lower bound");
-    say(out, "self-stresses h          {}\n", c.hyperstaticity);
-    say(out, "mechanisms k             {}\n", c.mechanisms);
+    out.item(grains, packing.disk_count(), grains, "{}{}", packing.disk_count(), bodies);
+    const bool periodic = packing.cell.any();
+    out.item("length", numbers(lengths_of(state)));
+    out.item("solid_fraction", or_null(packing.solid_fraction()), periodic ? "cell" : "box",
+             "{}, solid fraction {:.6f}",
+             periodic ? cell_words(packing) : fmt::format("{}", fmt::join(lengths_of(state), " x ")),
+             packing.solid_fraction());
+    const auto shears = std::span(state.load.shear).first(packing.tilts());
+    const bool sheared = std::ranges::any_of(shears, [](double shear) { return shear != 0; });
+    out.item("stress", numbers(stresses_of(state)));
+    out.item("load", word_of(state.load.kind, load_kind_words), "load", "sigma = ({}){}, {}",
+             fmt::format("{}", fmt::join(stresses_of(state), ", ")),
+             sheared ? fmt::format(", shear {}", fmt::join(shears, ", ")) : "",
+             state.load.kind != LoadKind::nominal ? "true stresses"
+             : packing.cell.keeps_shape ? fmt::format("along {}; on the size of the cell, it scales all forces alike",
+                                                      axis_names[packing.axes() - 1])
+             : periodic                 ? "nominal (constant forces on the periods)"
+                                        : "nominal (constant wall forces)");
+    if (const auto& path = state.load.path) {
+        const auto at = of_path(state, path->at), rate = of_path(state, path->rate);
+        out.item("path", {{"t", or_null(path->t)}, {"stress", numbers(at)}, {"direction", numbers(rate)}}, "loaded",
+                 "t = {}: sigma = ({}) + t ({})", path->t, fmt::format("{}", fmt::join(at, ", ")),
+                 fmt::format("{}", fmt::join(rate, ", ")));
+    }
+    out.same("N_f", "degrees of freedom N_f", c.dof_count);
+    out.same("N", "contacts N", c.contact_count);
+    out.item("rank", c.rank, "rank, stored coordinates", "{} ({})", c.rank,
+             c.rank_exact == Verdict::proved ? "exact" : "proved lower bound");
+    out.item("rank_exact", to_string(c.rank_exact));
+    out.same("h", "self-stresses h", c.hyperstaticity);
+    out.same("k", "mechanisms k", c.mechanisms);
 }
 
 /// Contains the smallest finite force that is no structural zero.
@@ -89,21 +92,39 @@ Interval smallest_force(const Inspection& inspection) {
     return smallest;
 }
 
-void print_forces(std::string& out, const Inspection& inspection, int dimension) {
+/// The interval of the load, and the smallest force.
+void add_forces(Answer& out, const Inspection& inspection) {
+    const int dimension = inspection.truth.dimension;
     const EquilibriumRecord& r = inspection.record;
-    const CertificateClaims& claims = inspection.truth.claims;
-    if (claims.load_interval) {
-        say(out, "supported interval       from {}\n", end_text(claims.load_interval->low, dimension));
-        say(out, "                         to   {}\n", end_text(claims.load_interval->high, dimension));
-    } else {
-        say(out, "supported interval       undecided\n");
+    const auto& interval = inspection.truth.claims.load_interval;
+    out.item("interval_decided", interval.has_value());
+    out.item("supported_interval", {or_null(r.stress_low), or_null(r.stress_high)}); // midpoints of the ends below
+    out.item("opens", Json::array());
+    for (const bool low : {true, false}) {
+        const LoadEndClaim* const end = interval ? &(low ? interval->low : interval->high) : nullptr;
+        const bool bounded = end != nullptr && !end->unbounded;
+        out.item(low ? "interval_low" : "interval_high",
+                 bounded ? Json::array({or_null(end->stress.lower), or_null(end->stress.upper)})
+                         : Json::array({nullptr, nullptr}));
+        out.json["opens"].push_back(bounded ? Json(to_string(end->opens, dimension)) : Json());
+        if (end != nullptr) {
+            out.line(low ? "supported interval" : "", "{} {}", low ? "from" : "to  ", end_text(*end, dimension));
+        }
     }
+    if (!interval) {
+        out.line("supported interval", "undecided");
+    }
+    const Interval smallest = smallest_force(inspection);
+    const std::string where = to_string(r.min_force_contact, dimension);
     if (r.backbone > 0) {
-        const Interval smallest = smallest_force(inspection);
-        say(out, "smallest force           {} in {} (every force known to {})\n",
-            with_bound(smallest.lower, smallest.upper), to_string(r.min_force_contact, dimension),
-            rounded_up(r.force_bound, 2));
+        out.line("smallest force", "{} in {} (every force known to {})", with_bound(smallest.lower, smallest.upper),
+                 where, rounded_up(r.force_bound, 2));
     }
+    out.item("min_force", or_null(r.min_force));
+    out.item("min_force_between", {or_null(smallest.lower), or_null(smallest.upper)});
+    out.item("min_force_contact", where);
+    out.item("force_bound", or_null(r.force_bound));
+    out.item("margin", or_null(r.margin));
 }
 
 /// Number of contacts with a force, without the held coordinates of the list.
@@ -121,159 +142,96 @@ int rattling_bodies(const Packing& packing, const std::vector<int>& rattlers) {
     return static_cast<int>(std::ranges::count_if(rattlers, [&](int i) { return bodies.of(i) == i; }));
 }
 
-void print_yielding(std::string& out, const Inspection& inspection, const Load& load) {
-    if (!inspection.yielding) {
-        return;
-    }
-    const Yielding& y = *inspection.yielding;
-    std::string rates;
-    for (std::size_t a = 0; a < static_cast<std::size_t>(inspection.truth.dimension); ++a) {
-        const Enclosure& rate = y.length_rate[a];
-        rates += fmt::format("{}L{} by {}", a == 0 ? "" : ", ", axis_names[a],
-                             with_bound(rate.value - rate.radius, rate.value + rate.radius));
-    }
-    std::string values;
-    for (const Enclosure& value : y.second_variation) {
-        values += (values.empty() ? "" : ", ") + with_bound(value.value - value.radius, value.value + value.radius);
-    }
-    if (!values.empty()) {
-        say(out, "W'' in (X, Y, angle)     {}\n", values);
-    }
-    say(out, "yields                   {} per unit of {}\n", rates, load.stress_name());
-    for (const auto& [where, event] : {std::pair{"rising", &y.up}, {"falling", &y.down}}) {
-        if (event->contact.i >= 0 || event->flattens) {
-            const std::string what = event->flattens ? "W'' vanishes along a mechanism"
-                                                     : to_string(event->contact, inspection.truth.dimension) +
-                                                           (event->opens ? " opens" : " closes");
-            say(out, "  under {:<7}          at these rates {} first, near {:.6g} (not proved)\n", where, what,
-                event->stress);
-        }
-    }
+/// An interval as the pair of its midpoint and radius, and as text with a bound.
+Json pair_of(const Enclosure& e) {
+    return {or_null(e.value), or_null(e.radius)};
+}
+std::string text_of(const Enclosure& e) {
+    return with_bound(e.value - e.radius, e.value + e.radius);
 }
 
-void print_inspection(std::string& out, const State& state, const Inspection& inspection) {
-    const EquilibriumRecord& r = inspection.record;
+void add_yielding(Answer& out, const Yielding& y, const Load& load, int dimension) {
+    const std::span<const Enclosure> rates = std::span(y.length_rate).first(static_cast<std::size_t>(dimension));
+    std::string rates_text, values;
+    for (std::size_t a = 0; a < rates.size(); ++a) {
+        rates_text += fmt::format("{}L{} by {}", a == 0 ? "" : ", ", axis_names[a], text_of(rates[a]));
+    }
+    for (const Enclosure& value : y.second_variation) {
+        values += (values.empty() ? "" : ", ") + text_of(value);
+    }
+    out.item("second_variation", json::array_of(y.second_variation, pair_of));
+    if (!values.empty()) {
+        out.line("W'' in (X, Y, angle)", "{}", values);
+    }
+    Answer yielding;
+    yielding.item("length_rates", json::array_of(rates, pair_of), "yields", "{} per unit of {}", rates_text,
+                  load.stress_name());
+    for (const auto& [key, where, event] : {std::tuple{"up", "rising", &y.up}, {"down", "falling", &y.down}}) {
+        yielding.item(key, nullptr);
+        if (event->contact.i >= 0 || event->flattens) {
+            const std::string contact = event->flattens ? "" : to_string(event->contact, dimension);
+            const char* const what = event->flattens ? "flattens" : event->opens ? "opens" : "closes";
+            yielding.item(key,
+                          {{"contact", event->flattens ? Json() : Json(contact)},
+                           {"what", what},
+                           {"stress", or_null(event->stress)}},
+                          fmt::format("  under {}", where), "at these rates {} first, near {:.6g} (not proved)",
+                          event->flattens ? "W'' vanishes along a mechanism" : contact + " " + what, event->stress);
+        }
+    }
+    out.part("yielding", std::move(yielding));
+}
+
+void add_rattlers(Answer& out, const State& state, const Inspection& inspection) {
+    out.item("rattlers", inspection.rattlers);
     if (state.packing.bars.empty()) {
         const std::vector<int> few = rattlers_by_coordination(state.packing, state.contacts);
-        say(out,
-            "rattlers                 {} by forces, {} by coordination (at most {} contacts, counted until none is "
-            "left)\n",
-            inspection.rattlers.size(), few.size(), state.packing.dimension);
+        out.item("rattlers_by_coordination", few, "rattlers",
+                 "{} by forces, {} by coordination (at most {} contacts, counted until none is left)",
+                 inspection.rattlers.size(), few.size(), state.packing.dimension);
     } else {
-        say(out,
-            "rattlers                 {} bodies without force, {} more that turn about their one member with "
-            "contacts\n",
-            rattling_bodies(state.packing, inspection.rattlers), inspection.rotational_rattlers.size());
+        out.item("rotational_rattlers", inspection.rotational_rattlers, "rattlers",
+                 "{} bodies without force, {} more that turn about their one member with contacts",
+                 rattling_bodies(state.packing, inspection.rattlers), inspection.rotational_rattlers.size());
     }
-    say(out, "solid fraction           {:.6f} without the rattlers by forces\n",
-        state.packing.solid_fraction_without(inspection.rattlers));
-    say(out, "force-carrying contacts  {}\n", carrying_count(inspection));
-    if (inspection.equilibrium) {
-        print_forces(out, inspection, inspection.truth.dimension);
-    }
-    if (inspection.truth.claims.gaps) {
-        say(out, "smallest gap             {}\n",
-            !std::isfinite(r.min_gap)
-                ? "there is no other pair"
-                : fmt::format("at least {} ({})", rounded_down(r.min_gap, 6),
-                              r.min_gap_contact.i < 0
-                                  ? "no other pair is near"
-                                  : "nearest: " + to_string(r.min_gap_contact, inspection.truth.dimension)));
-    }
-    if (inspection.truth.claims.vertex) {
-        say(out, "largest gap of a contact at most {}\n", rounded_up(r.gap_residual, 2));
-        say(out, "smallest singular value  at least {}\n", rounded_down(r.sigma_min_bound, 3));
-        say(out, "decided by               {}\n", to_string(r.decided_by));
-    }
-    say(out, "isostatic equilibrium    {}{}{}\n", to_string(r.verdict), inspection.remark.empty() ? "" : ": ",
-        inspection.remark);
-    say(out, "stable                   {}\n", to_string(inspection.stable));
-    print_yielding(out, inspection, state.load);
+    const double without = state.packing.solid_fraction_without(inspection.rattlers);
+    out.item("solid_fraction_without_rattlers", or_null(without), "solid fraction",
+             "{:.6f} without the rattlers by forces", without);
 }
 
-Json counting_json(const std::string& file, const State& state, const Counting& c) {
-    Json object;
-    object["file"] = file;
-    object[fmt::format("{}s", grain_word(state.packing.dimension))] = state.packing.disk_count();
-    if (!state.packing.bars.empty()) {
-        object["bodies"] = Bodies(state.packing).count();
-    }
-    object["length"] = numbers(lengths_of(state));
-    object["solid_fraction"] = or_null(state.packing.solid_fraction());
-    object["stress"] = numbers(stresses_of(state));
-    object["load"] = word_of(state.load.kind, load_kind_words);
-    if (const auto& path = state.load.path) {
-        object["path"] = {{"t", or_null(path->t)},
-                          {"stress", numbers(of_path(state, path->at))},
-                          {"direction", numbers(of_path(state, path->rate))}};
-    }
-    object.update(json::counts(c));
-    return object;
-}
-
-void add_yielding(Json& object, const Yielding& y, int dimension) {
-    const auto event = [dimension](const Yielding::Event& e) {
-        if (e.flattens) {
-            return Json{{"contact", nullptr}, {"what", "flattens"}, {"stress", or_null(e.stress)}};
-        }
-        return e.contact.i < 0 ? Json()
-                               : Json{{"contact", to_string(e.contact, dimension)},
-                                      {"what", e.opens ? "opens" : "closes"},
-                                      {"stress", or_null(e.stress)}};
-    };
-    const auto pairs = [](std::span<const Enclosure> values) {
-        return json::array_of(values, [](const Enclosure& e) { return Json{or_null(e.value), or_null(e.radius)}; });
-    };
-    const Json rates = pairs(std::span(y.length_rate).first(static_cast<std::size_t>(dimension)));
-    object["second_variation"] = pairs(y.second_variation);
-    object["yielding"] = {{"length_rates", rates}, {"up", event(y.up)}, {"down", event(y.down)}};
-}
-
-void add_inspection(Json& object, const State& state, const Inspection& inspection) {
+void add_inspection(Answer& out, const State& state, const Inspection& inspection) {
     const EquilibriumRecord& r = inspection.record;
-    object["rattlers"] = inspection.rattlers;
-    if (state.packing.bars.empty()) {
-        object["rattlers_by_coordination"] = rattlers_by_coordination(state.packing, state.contacts);
-    } else {
-        object["rotational_rattlers"] = inspection.rotational_rattlers;
-    }
-    object["solid_fraction_without_rattlers"] = or_null(state.packing.solid_fraction_without(inspection.rattlers));
-    object["backbone"] = carrying_count(inspection);
-    object["held"] = r.held;
+    const CertificateClaims& claims = inspection.truth.claims;
+    add_rattlers(out, state, inspection);
+    out.same("backbone", "force-carrying contacts", carrying_count(inspection));
+    out.item("held", r.held);
     if (inspection.equilibrium) {
-        const auto& interval = inspection.truth.claims.load_interval;
-        Json opens = Json::array();
-        object["interval_decided"] = interval.has_value();
-        object["supported_interval"] = {or_null(r.stress_low), or_null(r.stress_high)}; // midpoints of the ends below
-        for (const auto& [key, end] :
-             {std::pair{"interval_low", &LoadIntervalClaim::low}, {"interval_high", &LoadIntervalClaim::high}}) {
-            const LoadEndClaim* const known = interval && !((*interval).*end).unbounded ? &((*interval).*end) : nullptr;
-            object[key] = known != nullptr ? Json::array({or_null(known->stress.lower), or_null(known->stress.upper)})
-                                           : Json::array({nullptr, nullptr});
-            opens.push_back(known != nullptr ? Json(to_string(known->opens, inspection.truth.dimension)) : Json());
-        }
-        object["opens"] = std::move(opens);
-        const Interval smallest = smallest_force(inspection);
-        object["min_force"] = or_null(r.min_force);
-        object["min_force_between"] = {or_null(smallest.lower), or_null(smallest.upper)};
-        object["min_force_contact"] = to_string(r.min_force_contact, inspection.truth.dimension);
-        object["force_bound"] = or_null(r.force_bound);
-        object["margin"] = or_null(r.margin);
+        add_forces(out, inspection);
     }
-    if (inspection.truth.claims.vertex) {
-        object["decided_by"] = to_string(r.decided_by);
-        object["gap_residual"] = or_null(r.gap_residual);
-        object["sigma_min_bound"] = or_null(r.sigma_min_bound);
+    out.item("min_gap", nullptr);
+    out.item("min_gap_contact", nullptr);
+    if (claims.gaps && !std::isfinite(r.min_gap)) {
+        out.line("smallest gap", "there is no other pair");
+    } else if (claims.gaps) {
+        const std::string nearest =
+            r.min_gap_contact.i < 0 ? "" : to_string(r.min_gap_contact, inspection.truth.dimension);
+        out.item("min_gap_contact", nearest.empty() ? Json() : Json(nearest));
+        out.item("min_gap", r.min_gap, "smallest gap", "at least {} ({})", rounded_down(r.min_gap, 6),
+                 nearest.empty() ? "no other pair is near" : "nearest: " + nearest);
     }
-    object["min_gap"] = inspection.truth.claims.gaps ? or_null(r.min_gap) : Json();
-    object["min_gap_contact"] = inspection.truth.claims.gaps && std::isfinite(r.min_gap) && r.min_gap_contact.i >= 0
-                                    ? Json(to_string(r.min_gap_contact, inspection.truth.dimension))
-                                    : Json();
-    object["verdict"] = to_string(r.verdict);
-    object["stable"] = to_string(inspection.stable);
-    object["remark"] = inspection.remark;
+    if (claims.vertex) {
+        out.item("gap_residual", or_null(r.gap_residual), "largest gap of a contact", "at most {}",
+                 rounded_up(r.gap_residual, 2));
+        out.item("sigma_min_bound", or_null(r.sigma_min_bound), "smallest singular value", "at least {}",
+                 rounded_down(r.sigma_min_bound, 3));
+        out.same("decided_by", "decided by", to_string(r.decided_by));
+    }
+    out.item("remark", inspection.remark);
+    out.item("verdict", to_string(r.verdict), "isostatic equilibrium", "{}{}{}", to_string(r.verdict),
+             inspection.remark.empty() ? "" : ": ", inspection.remark);
+    out.same("stable", "stable", to_string(inspection.stable));
     if (inspection.yielding) {
-        add_yielding(object, *inspection.yielding, inspection.truth.dimension);
+        add_yielding(out, *inspection.yielding, state.load, inspection.truth.dimension);
     }
 }
 
@@ -300,28 +258,21 @@ bool has_forces(const State& state, const Certification& truth) {
     return !state.contacts.empty() && truth.finite.size() == state.contacts.size();
 }
 
-void print_averages(std::string& out, const State& state, const Certification& truth, const Coordination& z) {
+void add_averages(Answer& out, const State& state, const Certification& truth, const Coordination& z) {
     const ForceAverages mean = force_averages(state, truth);
     const std::size_t axes = state.packing.axes();
-    say(out, "coordination number      {:.6g}, {:.6g} of the force-carrying contacts without rattlers\n", z.all,
-        z.carrying);
-    say(out, "stress of the contacts   {} (sum of f n n l over the volume), pressure {:.6g}\n",
-        tensor_text(mean.stress, axes), mean.pressure);
-    say(out, "fabric                   {} (mean of n n over force-carrying pairs)\n", tensor_text(mean.fabric, axes));
-}
-
-void add_averages(Json& object, const State& state, const Certification& truth, const Coordination& z) {
-    const ForceAverages mean = force_averages(state, truth);
-    const std::size_t axes = state.packing.axes();
-    object["coordination"] = or_null(z.all);
-    object["coordination_without_rattlers"] = or_null(z.carrying);
-    object["contact_stress"] = tensor_json(mean.stress, axes);
-    object["pressure"] = or_null(mean.pressure);
-    object["fabric"] = tensor_json(mean.fabric, axes);
-    object["mean_force"] = or_null(mean.mean_force);
-    object["force_distribution"] = json::array_of(force_distribution(state, truth), [](const auto& at) {
-        return Json{or_null(at.first), or_null(at.second)};
-    });
+    out.item("coordination_without_rattlers", or_null(z.carrying));
+    out.item("coordination", or_null(z.all), "coordination number",
+             "{:.6g}, {:.6g} of the force-carrying contacts without rattlers", z.all, z.carrying);
+    out.item("pressure", or_null(mean.pressure));
+    out.item("contact_stress", tensor_json(mean.stress, axes), "stress of the contacts",
+             "{} (sum of f n n l over the volume), pressure {:.6g}", tensor_text(mean.stress, axes), mean.pressure);
+    out.item("fabric", tensor_json(mean.fabric, axes), "fabric", "{} (mean of n n over force-carrying pairs)",
+             tensor_text(mean.fabric, axes));
+    out.item("mean_force", or_null(mean.mean_force));
+    out.item("force_distribution", json::array_of(force_distribution(state, truth), [](const auto& at) {
+                 return Json{or_null(at.first), or_null(at.second)};
+             }));
 }
 
 /// The smallest singular values of a structure that is proved regular.
@@ -335,21 +286,18 @@ std::vector<double> singular_values_of(std::optional<int> wanted, const State& s
     return structure.ok() ? smallest_singular_values(structure.value(), count) : std::vector<double>();
 }
 
-/// Prints each force.
-void print_forces_at(std::string& out, const State& state, const Certification& truth) {
-    for (std::size_t l = 0; l < truth.finite.size(); ++l) {
-        say(out, "force {:<18} {}\n", to_string(state.contacts[l], state.packing.dimension),
-            with_bound(truth.finite[l].lower, truth.finite[l].upper));
+/// \p each: the text has every force too.
+void add_forces_at(Answer& out, const State& state, const Certification& truth, bool each) {
+    Json forces = Json::array();
+    for (std::size_t l = 0; l < truth.finite.size() && (each || out.lists); ++l) {
+        const auto& [lower, upper] = truth.finite[l];
+        const std::string name = to_string(state.contacts[l], state.packing.dimension);
+        forces.push_back({name, or_null(lower), or_null(upper)});
+        if (each) {
+            out.line(fmt::format("force {:<18}", name), "{}", with_bound(lower, upper));
+        }
     }
-}
-
-Json forces_json(const State& state, const Certification& truth) {
-    Json out = Json::array();
-    for (std::size_t l = 0; l < truth.finite.size(); ++l) {
-        out.push_back({to_string(state.contacts[l], state.packing.dimension), or_null(truth.finite[l].lower),
-                       or_null(truth.finite[l].upper)});
-    }
-    return out;
+    out.item("forces", std::move(forces));
 }
 
 /// Empty when the forces or the rattlers are not known.
@@ -363,69 +311,42 @@ std::optional<Coordination> coordination_of(const StateAnswer& answer) {
 
 } // namespace
 
-std::string to_text(const StateAnswer& answer, bool each_force) {
-    std::string out;
+Answer to_answer(const StateAnswer& answer, const std::string& file, bool each_force, bool lists) {
+    Answer out{.lists = lists};
     const State& state = answer.file.state;
-    print_counting(out, state, answer.truth.counting);
+    out.item("file", file);
+    add_counting(out, state, answer.truth.counting);
     if (const std::string copy = compare::words_of_copy(state); !copy.empty()) {
-        say(out, "copy                     {}\n", copy);
+        out.same("copy", "copy", copy);
     }
     if (answer.result.ok()) {
-        print_inspection(out, state, answer.result.value());
+        add_inspection(out, state, answer.result.value());
     } else {
-        say(out, "isostatic equilibrium    {}: {}\n", answer.refuted() ? "refuted" : "undecided",
-            answer.result.failure().message(state.packing.dimension));
+        const std::string remark = answer.result.failure().message(state.packing.dimension);
+        const char* const verdict = answer.refuted() ? "refuted" : "undecided";
+        out.item("remark", remark);
+        out.item("verdict", verdict, "isostatic equilibrium", "{}: {}", verdict, remark);
     }
-    print_true_vertex(out, answer.truth);
+    add_true_vertex(out, answer.truth);
     if (const auto z = coordination_of(answer)) {
-        print_averages(out, state, answer.truth, *z);
+        add_averages(out, state, answer.truth, *z);
     }
+    add_untold(out, answer.untold, answer.truth.verdict);
+    out.item("singular_values", numbers(answer.singular_values));
     if (!answer.singular_values.empty()) {
-        say(out, "smallest singular values {} (of the stored coordinates, computed)\n",
-            fmt::format("{:.4g}", fmt::join(answer.singular_values, ", ")));
+        out.line("smallest singular values", "{} (of the stored coordinates, computed)",
+                 fmt::format("{:.4g}", fmt::join(answer.singular_values, ", ")));
     }
     if (answer.cell) {
-        print_cell(out, *answer.cell);
+        add_cell(out, state.packing, *answer.cell);
     }
     if (answer.box) {
-        print_box(out, state.packing, *answer.box);
+        add_box(out, state.packing, *answer.box);
     }
-    print_face(out, state);
-    print_forces_in_file(out, answer.file, answer.truth);
-    if (each_force) {
-        print_forces_at(out, state, answer.truth);
-    }
+    add_face(out, state);
+    add_forces_in_file(out, answer.file, answer.truth);
+    add_forces_at(out, state, answer.truth, each_force);
     return out;
-}
-
-Json to_json(const StateAnswer& answer, const std::string& file) {
-    const State& state = answer.file.state;
-    Json object = counting_json(file, state, answer.truth.counting);
-    if (answer.result.ok()) {
-        add_inspection(object, state, answer.result.value());
-    } else {
-        object["verdict"] = answer.refuted() ? "refuted" : "undecided";
-        object["remark"] = answer.result.failure().message(state.packing.dimension);
-    }
-    if (const auto z = coordination_of(answer)) {
-        add_averages(object, state, answer.truth, *z);
-    }
-    add_untold(object, answer.untold, answer.truth.verdict);
-    if (const std::string copy = compare::words_of_copy(state); !copy.empty()) {
-        object["copy"] = copy;
-    }
-    object["true_configuration"] = true_vertex_json(answer.truth);
-    object["forces"] = forces_json(state, answer.truth);
-    object["singular_values"] = numbers(answer.singular_values);
-    if (answer.cell) {
-        object["cell"] = cell_json(state.packing, *answer.cell);
-    }
-    if (answer.box) {
-        object["box"] = box_json(*answer.box);
-    }
-    add_face(object, state);
-    add_forces_in_file(object, answer.file, answer.truth);
-    return object;
 }
 
 StateAnswer answer_of(const StateFile& file, std::optional<int> singular_values) {

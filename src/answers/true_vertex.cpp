@@ -1,7 +1,6 @@
 #include "answers/state.hpp"
 #include "contact/words.hpp"
 #include "core/decimal.hpp"
-#include "io/text.hpp"
 
 #include <fmt/format.h>
 
@@ -11,14 +10,12 @@
 
 namespace isostat::answers {
 
-using json::Json;
-using json::or_null;
-using text::say;
-
 namespace {
 
-void line(std::string& out, const char* claim, const std::string& text, const std::string& rung) {
-    say(out, "{:<14} {:<88} {}\n", claim, text, rung);
+/// A claim: its values, its words, and the arithmetic that proved it.
+void add_claim(Answer& claims, const char* key, Json values, Rung rung, const std::string& words) {
+    values["rung"] = to_string(rung);
+    claims.item(key, std::move(values), key, "{:<88} {}", words, to_string(rung));
 }
 
 /// The smallest lower end and the largest width of the intervals that are not structural zeros.
@@ -40,13 +37,10 @@ std::pair<double, double> smallest_and_widest(const ForcesClaim& forces, const s
 }
 
 Json end_json(const LoadEndClaim& end, int dimension) {
-    Json object;
-    object["unbounded"] = end.unbounded;
-    if (!end.unbounded) {
-        object["stress"] = {or_null(end.stress.lower), or_null(end.stress.upper)};
-        object["opens"] = to_string(end.opens, dimension);
-    }
-    return object;
+    return end.unbounded ? Json{{"unbounded", true}}
+                         : Json{{"unbounded", false},
+                                {"stress", {or_null(end.stress.lower), or_null(end.stress.upper)}},
+                                {"opens", to_string(end.opens, dimension)}};
 }
 
 std::string signs_text(const ForceSigns& s) {
@@ -55,24 +49,40 @@ std::string signs_text(const ForceSigns& s) {
     return text + (s.undecided > 0 ? fmt::format(", {} undecided", s.undecided) : "");
 }
 
-/// Compares the forces of a state file with the proved forces: the largest difference, and its contact.
-struct FileForces {
-    double difference = 0;
-    Contact where;
-};
-
-std::optional<FileForces> compared_forces(const StateFile& file, const Certification& truth) {
-    if (file.forces.empty() || file.forces.size() != truth.finite.size()) {
-        return std::nullopt;
+/// The claims of the true vertex, its forces and its gaps.
+void add_bounds(Answer& claims, const Certification& certification, const std::vector<Contact>& contacts) {
+    const CertificateClaims& c = certification.claims;
+    if (c.vertex) {
+        const double sigma = certification.smallest_sigma;
+        add_claim(claims, "vertex",
+                  {{"radius", or_null(c.vertex->radius)},
+                   {"unique_radius", or_null(c.vertex->unique_radius)},
+                   {"sigma_min", or_null(sigma)}},
+                  c.vertex->rung,
+                  fmt::format("exists within {} per coordinate, the only one within {}; sigma_min >= {}",
+                              rounded_up(c.vertex->radius, 3), rounded_down(c.vertex->unique_radius, 3),
+                              rounded_down(sigma, 3)));
     }
-    FileForces out;
-    for (std::size_t l = 0; l < file.forces.size(); ++l) {
-        const double off = std::max(file.forces[l] - truth.finite[l].lower, truth.finite[l].upper - file.forces[l]);
-        if (off > out.difference) {
-            out = {off, file.state.contacts[l]};
-        }
+    if (c.forces) {
+        const auto [smallest, widest] = smallest_and_widest(*c.forces, contacts);
+        add_claim(claims, "forces",
+                  {{"positive", certification.signs.positive},
+                   {"structural_zeros", certification.signs.structural_zero},
+                   {"smallest", or_null(smallest)},
+                   {"widest_interval", or_null(widest)}},
+                  c.forces->rung,
+                  fmt::format("{}; smallest >= {}, each within {}", signs_text(certification.signs),
+                              rounded_down(smallest, 6), rounded_up(widest, 2)));
     }
-    return out;
+    if (c.gaps) {
+        const std::string where =
+            std::isfinite(c.gaps->smallest) ? to_string(c.gaps->where, certification.dimension) : "";
+        add_claim(
+            claims, "gaps", {{"smallest", or_null(c.gaps->smallest)}, {"where", where.empty() ? Json() : Json(where)}},
+            c.gaps->rung,
+            where.empty() ? "there is no other pair"
+                          : fmt::format("all other gaps >= {}, nearest {}", rounded_down(c.gaps->smallest, 6), where));
+    }
 }
 
 } // namespace
@@ -83,161 +93,105 @@ std::string end_text(const LoadEndClaim& end, int dimension) {
                                        to_string(end.opens, dimension));
 }
 
-void print_claims(std::string& out, const Certification& certification, const std::vector<Contact>& contacts) {
+void add_claims(Answer& out, const Certification& certification, const std::vector<Contact>& contacts) {
     const CertificateClaims& c = certification.claims;
-    say(out, "{:<14} {:<88} {}\n", "claim", "proved of the stored coordinates (counting) and of the true vertex",
-        "arithmetic");
+    const int dimension = certification.dimension;
+    Answer claims{.width = 14};
+    claims.json = {{"counting", nullptr}, {"vertex", nullptr},        {"forces", nullptr},
+                   {"gaps", nullptr},     {"load_interval", nullptr}, {"stable", c.stable}};
+    claims.line("claim", "{:<88} {}", "proved of the stored coordinates (counting) and of the true vertex",
+                "arithmetic");
     if (c.counting) {
-        line(out, "counting",
-             fmt::format("N_f = {}, N = {}, rank {}, h = {}, k = {}", c.counting->dof_count, c.counting->contact_count,
-                         c.counting->rank, c.counting->hyperstaticity, c.counting->hypostaticity),
-             std::string(to_string(c.counting->rung)));
+        const auto& [n_f, n, rank, h, k, rung] = *c.counting;
+        add_claim(claims, "counting", {{"N_f", n_f}, {"N", n}, {"rank", rank}, {"h", h}, {"k", k}}, rung,
+                  fmt::format("N_f = {}, N = {}, rank {}, h = {}, k = {}", n_f, n, rank, h, k));
     }
-    if (c.vertex) {
-        line(out, "vertex",
-             fmt::format("exists within {} per coordinate, the only one within {}; sigma_min >= {}",
-                         rounded_up(c.vertex->radius, 3), rounded_down(c.vertex->unique_radius, 3),
-                         rounded_down(certification.smallest_sigma, 3)),
-             std::string(to_string(c.vertex->rung)));
-    }
-    if (c.forces) {
-        const auto [smallest, widest] = smallest_and_widest(*c.forces, contacts);
-        line(out, "forces",
-             fmt::format("{}; smallest >= {}, each within {}", signs_text(certification.signs),
-                         rounded_down(smallest, 6), rounded_up(widest, 2)),
-             std::string(to_string(c.forces->rung)));
-    }
-    if (c.gaps) {
-        line(out, "gaps",
-             std::isfinite(c.gaps->smallest)
-                 ? fmt::format("all other gaps >= {}, nearest {}", rounded_down(c.gaps->smallest, 6),
-                               to_string(c.gaps->where, certification.dimension))
-                 : "there is no other pair",
-             std::string(to_string(c.gaps->rung)));
-    }
+    add_bounds(claims, certification, contacts);
     if (c.load_interval) {
-        const std::string rung(to_string(c.load_interval->rung));
-        line(out, "load interval", "from " + end_text(c.load_interval->low, certification.dimension), rung);
-        line(out, "", "to   " + end_text(c.load_interval->high, certification.dimension), rung);
+        const auto& [low, high, rung] = *c.load_interval;
+        claims.item("load_interval",
+                    {{"low", end_json(low, dimension)}, {"high", end_json(high, dimension)}, {"rung", to_string(rung)}},
+                    "load interval", "{:<88} {}", "from " + end_text(low, dimension), to_string(rung));
+        claims.line("", "{:<88} {}", "to   " + end_text(high, dimension), to_string(rung));
     }
     if (c.stable) {
-        line(out, "stable",
-             fmt::format("strict local minimum of {}{}", certification.potential,
-                         c.counting->hypostaticity > 0 ? ", but for motions that change no force" : ""),
-             "");
+        claims.line("stable", "{:<88} ",
+                    fmt::format("strict local minimum of {}{}", certification.potential,
+                                c.counting->hypostaticity > 0 ? ", but for motions that change no force" : ""));
     }
     if (c.minimum) {
-        line(out, "minimum",
-             fmt::format("an equilibrium within {} per coordinate, W'' >= {} along its mechanisms",
-                         rounded_up(c.minimum->away, 2), rounded_down(c.minimum->curvature, 3)),
-             "");
+        claims.item("minimum", {{"away", or_null(c.minimum->away)}, {"curvature", or_null(c.minimum->curvature)}},
+                    "minimum", "{:<88} ",
+                    fmt::format("an equilibrium within {} per coordinate, W'' >= {} along its mechanisms",
+                                rounded_up(c.minimum->away, 2), rounded_down(c.minimum->curvature, 3)));
     }
     for (const std::string& reason : c.undecided) {
         const bool refuted = std::ranges::find(certification.refuted, reason) != certification.refuted.end();
-        say(out, "{:<14} {}\n", refuted ? "refuted" : "not claimed", reason);
+        claims.line(refuted ? "refuted" : "not claimed", "{}", reason);
     }
+    out.part("claims", std::move(claims));
+    out.item("refuted", certification.refuted);
+    out.item("undecided", c.undecided);
 }
 
-Json claims_json(const Certification& certification, const std::vector<Contact>& contacts) {
+void add_true_vertex(Answer& out, const Certification& certification) {
     const CertificateClaims& c = certification.claims;
-    Json object;
-    object["counting"] = c.counting ? Json{{"N_f", c.counting->dof_count},   {"N", c.counting->contact_count},
-                                           {"rank", c.counting->rank},       {"h", c.counting->hyperstaticity},
-                                           {"k", c.counting->hypostaticity}, {"rung", to_string(c.counting->rung)}}
-                                    : Json();
-    object["vertex"] = c.vertex ? Json{{"radius", or_null(c.vertex->radius)},
-                                       {"unique_radius", or_null(c.vertex->unique_radius)},
-                                       {"sigma_min", or_null(certification.smallest_sigma)},
-                                       {"rung", to_string(c.vertex->rung)}}
-                                : Json();
-    object["forces"] = nullptr;
-    if (c.forces) {
-        const auto [smallest, widest] = smallest_and_widest(*c.forces, contacts);
-        object["forces"] = {{"positive", certification.signs.positive},
-                            {"structural_zeros", certification.signs.structural_zero},
-                            {"smallest", or_null(smallest)},
-                            {"widest_interval", or_null(widest)},
-                            {"rung", to_string(c.forces->rung)}};
-    }
-    object["gaps"] =
-        c.gaps
-            ? Json{{"smallest", or_null(c.gaps->smallest)},
-                   {"where",
-                    std::isfinite(c.gaps->smallest) ? Json(to_string(c.gaps->where, certification.dimension)) : Json()},
-                   {"rung", to_string(c.gaps->rung)}}
-            : Json();
-    object["load_interval"] = c.load_interval ? Json{{"low", end_json(c.load_interval->low, certification.dimension)},
-                                                     {"high", end_json(c.load_interval->high, certification.dimension)},
-                                                     {"rung", to_string(c.load_interval->rung)}}
-                                              : Json();
-    object["stable"] = c.stable;
-    if (c.minimum) {
-        object["minimum"] = {{"away", or_null(c.minimum->away)}, {"curvature", or_null(c.minimum->curvature)}};
-    }
-    return object;
-}
-
-void print_true_vertex(std::string& out, const Certification& certification) {
-    const CertificateClaims& c = certification.claims;
+    Answer there;
     if (!c.vertex) {
-        say(out, "true configuration       not proved to exist\n");
+        there.item("exists", "undecided", "true configuration", "not proved to exist");
     } else {
-        say(out,
-            "true configuration       exists within {} of the stored coordinates ({}); rank {}, h = 0, k = {} "
-            "there (sigma_min >= {})\n",
-            rounded_up(c.vertex->radius, 3), to_string(c.vertex->rung), c.counting->rank, c.counting->hypostaticity,
-            rounded_down(certification.smallest_sigma, 3));
-        say(out, "  its forces             {}\n", signs_text(certification.signs));
-    }
-    for (const std::string& reason : c.undecided) {
-        say(out, "  not proved there       {}\n", reason);
-    }
-}
-
-Json true_vertex_json(const Certification& certification) {
-    const CertificateClaims& c = certification.claims;
-    Json object;
-    object["exists"] = c.vertex ? "proved" : "undecided";
-    if (c.vertex) {
-        object["radius"] = or_null(c.vertex->radius);
-        object["unique_radius"] = or_null(c.vertex->unique_radius);
-        object["rank"] = c.counting->rank;
-        object["h"] = 0;
-        object["k"] = 0;
-        object["sigma_min"] = or_null(certification.smallest_sigma);
+        const double sigma = certification.smallest_sigma;
+        there.item("exists", "proved", "true configuration",
+                   "exists within {} of the stored coordinates ({}); rank {}, h = 0, k = {} there (sigma_min >= {})",
+                   rounded_up(c.vertex->radius, 3), to_string(c.vertex->rung), c.counting->rank,
+                   c.counting->hypostaticity, rounded_down(sigma, 3));
+        there.json.update({{"radius", or_null(c.vertex->radius)},
+                           {"unique_radius", or_null(c.vertex->unique_radius)},
+                           {"rank", c.counting->rank},
+                           {"h", 0},
+                           {"k", 0},
+                           {"sigma_min", or_null(sigma)},
+                           {"decided_by", to_string(c.forces ? c.forces->rung : c.vertex->rung)}});
         const ForceSigns& s = certification.signs;
-        object["forces"] = {{"positive", s.positive},
-                            {"structural_zeros", s.structural_zero},
-                            {"negative", s.negative},
-                            {"undecided", s.undecided}};
-        object["decided_by"] = to_string(c.forces ? c.forces->rung : c.vertex->rung);
+        there.item("forces",
+                   {{"positive", s.positive},
+                    {"structural_zeros", s.structural_zero},
+                    {"negative", s.negative},
+                    {"undecided", s.undecided}},
+                   "  its forces", "{}", signs_text(s));
     }
-    object["not_proved"] = c.undecided;
-    return object;
+    there.item("not_proved", c.undecided);
+    for (const std::string& reason : c.undecided) {
+        there.line("  not proved there", "{}", reason);
+    }
+    out.part("true_configuration", std::move(there));
 }
 
-void print_forces_in_file(std::string& out, const StateFile& file, const Certification& truth) {
-    if (const auto forces = compared_forces(file, truth)) {
-        say(out, "forces in the file       differ from the proved ones by at most {}, in {}\n",
-            rounded_up(forces->difference, 2), to_string(forces->where, truth.dimension));
-    }
-}
-
-void add_forces_in_file(Json& object, const StateFile& file, const Certification& truth) {
-    if (const auto forces = compared_forces(file, truth)) {
-        object["forces_in_file"] = {{"difference", or_null(forces->difference)},
-                                    {"contact", to_string(forces->where, truth.dimension)}};
-    }
-}
-
-void add_untold(Json& object, const compare::Untold& untold, Verdict of_the_doubles) {
-    if (!untold.any()) {
+void add_forces_in_file(Answer& out, const StateFile& file, const Certification& truth) {
+    if (file.forces.empty() || file.forces.size() != truth.finite.size()) {
         return;
     }
-    object["untold"] = {{"rounding", or_null(untold.rounding)},
-                        {"gaps", contact_names(untold.gaps)},
-                        {"forces", contact_names(untold.forces)},
-                        {"verdict_of_the_doubles", to_string(of_the_doubles)}};
+    double difference = 0; // the largest
+    Contact where;
+    for (std::size_t l = 0; l < file.forces.size(); ++l) {
+        const double off = std::max(file.forces[l] - truth.finite[l].lower, truth.finite[l].upper - file.forces[l]);
+        if (off > difference) {
+            difference = off;
+            where = file.state.contacts[l];
+        }
+    }
+    out.item("forces_in_file", {{"difference", or_null(difference)}, {"contact", to_string(where, truth.dimension)}},
+             "forces in the file      ", "differ from the proved ones by at most {}, in {}", rounded_up(difference, 2),
+             to_string(where, truth.dimension));
+}
+
+void add_untold(Answer& out, const compare::Untold& untold, Verdict of_the_doubles) {
+    if (untold.any()) {
+        out.item("untold", {{"rounding", or_null(untold.rounding)},
+                            {"gaps", contact_names(untold.gaps)},
+                            {"forces", contact_names(untold.forces)},
+                            {"verdict_of_the_doubles", to_string(of_the_doubles)}});
+    }
 }
 
 } // namespace isostat::answers

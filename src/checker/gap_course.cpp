@@ -1,6 +1,5 @@
-#include "checker/courses.hpp"
-
 #include "checker/at_wall.hpp"
+#include "checker/courses.hpp"
 #include "checker/images.hpp"
 #include "core/index.hpp"
 

@@ -27,31 +27,21 @@ int certify(const CertifyArguments& arguments) {
     const compare::Untold untold = compare::untold_by(compare::imported_rounding(file.state), file.state, result);
     const Verdict verdict = withheld(untold, result.verdict);
     write_certificate(arguments.output, certificate);
-    if (arguments.common.json) {
-        Json object;
-        object["file"] = arguments.input;
-        object["certificate"] = arguments.output;
-        object["verdict"] = to_string(verdict);
-        answers::add_untold(object, untold, result.verdict);
-        object["claims"] = answers::claims_json(result, certificate.state.contacts);
-        object["refuted"] = result.refuted;
-        object["undecided"] = result.claims.undecided;
-        answers::add_forces_in_file(object, file, result);
-        print_json(object);
-    } else {
-        std::string text;
-        answers::print_claims(text, result, certificate.state.contacts);
-        answers::print_forces_in_file(text, file, result);
-        say_lines(text);
-        say("{:<14} {}: {}\n", to_string(verdict),
-            verdict == Verdict::proved && result.claims.minimum
-                ? "an equilibrium without overlap, not isostatic, stable along its mechanisms"
-            : verdict == Verdict::proved  ? "an isostatic, stable equilibrium without overlap at the true vertex"
-            : verdict == Verdict::refuted ? "not such an equilibrium"
-            : untold.any()                ? fmt::format("the claims are of the stored doubles; {}", untold.words())
-                                          : "some claims could not be made",
-            arguments.output);
-    }
+    answers::Answer answer{.width = 14};
+    answer.item("file", arguments.input);
+    answers::add_claims(answer, result, certificate.state.contacts);
+    answers::add_forces_in_file(answer, file, result);
+    answers::add_untold(answer, untold, result.verdict);
+    answer.item("certificate", arguments.output);
+    answer.item("verdict", to_string(verdict), std::string(to_string(verdict)), "{}: {}",
+                verdict == Verdict::proved && result.claims.minimum
+                    ? "an equilibrium without overlap, not isostatic, stable along its mechanisms"
+                : verdict == Verdict::proved  ? "an isostatic, stable equilibrium without overlap at the true vertex"
+                : verdict == Verdict::refuted ? "not such an equilibrium"
+                : untold.any()                ? fmt::format("the claims are of the stored doubles; {}", untold.words())
+                                              : "some claims could not be made",
+                arguments.output);
+    print(std::move(answer), arguments.common);
     return status_of(verdict);
 }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <utility>
 
 namespace isostat::cli {
 
@@ -18,8 +19,19 @@ std::string program_name() {
     return "isostat " ISOSTAT_VERSION;
 }
 
-Json document(const char* format, const Common& common) {
-    return {{"format", format}, {"program", program_name()}, {"command", common.command}};
+void print(answers::Answer answer, const Common& common, const char* format) {
+    if (!common.json) {
+        say_lines(answer.text);
+        return;
+    }
+    Json object = Json::object();
+    if (format != nullptr) {
+        object = {{"format", format}, {"program", program_name()}, {"command", common.command}};
+    }
+    for (auto&& [key, value] : answer.json.items()) { // `update` would copy
+        object[key] = std::move(value);
+    }
+    print_json(object);
 }
 
 void print_json(const Json& object) {

@@ -2,6 +2,7 @@
 /// \file
 /// Functions that several subcommands share.
 
+#include "answers/answer.hpp"
 #include "cli/commands.hpp"
 #include "cli/terminal.hpp"
 #include "contact/words.hpp"
@@ -21,8 +22,9 @@ namespace isostat::cli {
 using json::Json;
 using json::or_null;
 
-/// A JSON document that begins with its format ("isostat-plateau 1"), the program and the command line.
-Json document(const char* format, const Common& common);
+/// Prints the lines of an answer, or with --json its object; `format` ("isostat-plateau 1"): it begins with that, the
+/// program and the command line.
+void print(answers::Answer answer, const Common& common, const char* format = nullptr);
 
 /// Prints an object as one line on standard output.
 void print_json(const Json& object);

@@ -10,11 +10,9 @@ int genericity(const GenericityArguments& a) {
     check_output(a.csv, answers::genericity_head, {a.file});
     answers::GenericityAnswer answer{a.file, answers::read_original(a.file), a.options,
                                      static_cast<std::size_t>(a.lists)};
-    const bool text = !a.common.json;
-    if (text) {
-        say_lines(answers::head_text(answer));
-    }
-    Json results = Json::array();
+    answers::Answer told = answers::head_of(answer);
+    const auto show = [&a](const std::string& text) { say_lines(a.common.json ? "" : text); };
+    show(told.text);
     std::string csv = answers::genericity_head;
     std::vector<crafted::Genericity> all;
     bool every = true;
@@ -24,22 +22,15 @@ int genericity(const GenericityArguments& a) {
         const crafted::Genericity& result = all.back();
         every = every && result.proved == a.options.samples;
         csv += answers::csv_rows(result, size);
-        if (text) {
-            say_lines(answers::row_text(result, size));
-        } else {
-            results.push_back(answers::to_json(answer, result, size));
-        }
+        answers::Answer row = answers::row_of(answer, result, size);
+        show(row.text);
+        told.json["sizes"].push_back(std::move(row.json));
     }
     if (!a.csv.empty()) {
         write_output(a.csv, csv, answers::genericity_head);
     }
-    if (text) {
-        say_lines(answers::closing_text(answer, all, a.sizes));
-    } else {
-        Json object = document("isostat-genericity 1", a.common);
-        answers::add_genericity(object, answer, std::move(results));
-        print_json(object);
-    }
+    told.text = answers::closing_text(answer, all, a.sizes);
+    print(std::move(told), a.common, "isostat-genericity 1");
     return every ? done : undecided;
 }
 

@@ -322,82 +322,74 @@ Json provenance_of(const ImportArguments& a, const std::string& format, const Im
     return out;
 }
 
-/// The parts of the load that the user did not state.
-std::string load_by_default(const ImportArguments& a, const Imported& found) {
-    return found.load_of_file                   ? ""
-           : a.stress.empty() && a.load.empty() ? " (taken by default: --stress, --load)"
-           : a.stress.empty()                   ? " (stresses taken by default: --stress)"
-           : a.load.empty()                     ? " (its kind taken by default: --load)"
-                                                : "";
+/// The load, and which of its parts the user did not state.
+void add_load(answers::Answer& out, const ImportArguments& a, const Imported& found) {
+    const Load& load = found.state.load;
+    const std::vector<double> stress(load.stress.begin(), load.stress.begin() + load.dimension);
+    const bool no_stress = a.stress.empty() && !found.load_of_file;
+    const bool no_kind = a.load.empty() && !found.load_of_file;
+    out.item("load",
+             {{"stress", stress},
+              {"kind", word_of(load.kind, load_kind_words)},
+              {"by_default", {{"stress", no_stress}, {"kind", no_kind}}}},
+             "load", "sigma = ({}), {}{}", fmt::format("{}", fmt::join(stress, ", ")),
+             load.kind == LoadKind::nominal ? "nominal" : "true stresses",
+             no_stress && no_kind ? " (taken by default: --stress, --load)"
+             : no_stress          ? " (stresses taken by default: --stress)"
+             : no_kind            ? " (its kind taken by default: --load)"
+                                  : "");
 }
 
-std::string grains_of(const Packing& packing) {
-    return grain_word(packing.dimension) + std::string("s");
-}
-
-std::vector<double> stress_of(const Load& load) {
-    return {load.stress.begin(), load.stress.begin() + load.dimension};
-}
-
-void print_import(const ImportArguments& a, const ForeignPacking& file, const Imported& found,
-                  const compare::Moves& moves) {
+/// \p provenance: of the state, with which the values begin.
+answers::Answer import_answer(const ImportArguments& a, const ForeignPacking& file, const Imported& found,
+                              const compare::Moves& moves, Json provenance) {
     const State& state = found.state;
-    say("file      {} ({})\n", a.file, file.format);
-    for (const std::string& note : file.notes) {
-        say("          {}\n", note);
-    }
+    const Packing& packing = state.packing;
     const auto rattlers = std::ranges::count(moves.rattler, 1);
-    say("contacts  {}\n", found.contacts);
+    const std::string grains = grain_word(packing.dimension) + std::string("s");
+    answers::Answer out{.width = 9};
+    out.json = std::move(provenance);
+    out.line("file", "{} ({})", a.file, file.format);
+    for (const std::string& note : file.notes) {
+        out.line("", "{}", note);
+    }
+    out.line("contacts", "{}", found.contacts);
+    out.item("state", a.output);
+    out.item("notes", file.notes);
+    out.item(grains, packing.disk_count());
+    if (!packing.bars.empty()) {
+        out.item("bodies", Bodies(packing).count());
+    }
     if (found.held) {
-        say("written   {}: {} disks, {} rattlers by coordination, {} contacts, solid fraction {:.6f}; nothing moves "
-            "that a load presses on: isostat inspect says whether it is jammed\n",
-            a.output, state.packing.disk_count(), rattlers, state.contacts.size(), state.packing.solid_fraction());
-        return;
+        out.item("load", nullptr);
+        out.item("verdict", nullptr, "written",
+                 "{}: {} disks, {} rattlers by coordination, {} contacts, solid fraction {:.6f}; nothing moves "
+                 "that a load presses on: isostat inspect says whether it is jammed",
+                 a.output, packing.disk_count(), rattlers, state.contacts.size(), packing.solid_fraction());
+        return out;
     }
-    say("moved     {} with a force at most {}, {} {}", grains_of(state.packing), rounded_up(moves.backbone, 3),
-        state.packing.cell.any() ? "cell" : "walls", rounded_up(moves.walls, 3));
-    say("{}\n", rattlers == 0 ? ""
-                              : fmt::format(", {} {}, {}", rattlers,
-                                            state.packing.bars.empty() ? "rattlers, which rest on infinitesimal loads"
-                                                                       : "without a force",
-                                            rounded_up(moves.rattlers, 3)));
-    const auto stress = stress_of(state.load);
-    say("load      sigma = ({}), {}{}\n", fmt::format("{}", fmt::join(stress, ", ")),
-        state.load.kind == LoadKind::nominal ? "nominal" : "true stresses", load_by_default(a, found));
+    out.line("moved", "{} with a force at most {}, {} {}{}", grains, rounded_up(moves.backbone, 3),
+             packing.cell.any() ? "cell" : "walls", rounded_up(moves.walls, 3),
+             rattlers == 0
+                 ? ""
+                 : fmt::format(", {} {}, {}", rattlers,
+                               packing.bars.empty() ? "rattlers, which rest on infinitesimal loads" : "without a force",
+                               rounded_up(moves.rattlers, 3)));
+    add_load(out, a, found);
     if (found.copy) {
-        say("jitter    this is a copy with other radii: gaps or forces are so small that h, the contacts and the "
-            "strict verdict may differ from those of the file\n");
+        out.line("jitter", "this is a copy with other radii: gaps or forces are so small that h, the contacts and the "
+                           "strict verdict may differ from those of the file");
     }
-    say("{:<9} {}: {} {}, {} contacts, solid fraction {:.6f}{}\n", to_string(found.verdict()), a.output,
-        state.packing.disk_count(), grains_of(state.packing),
-        std::ranges::count_if(state.contacts, [](const Contact& c) { return c.is_unilateral(); }),
-        state.packing.solid_fraction(),
-        found.untold.any()
-            ? fmt::format("; {}; {} of the stored doubles", found.untold.words(), to_string(found.truth.verdict))
-        : found.truth.claims.minimum ? "; not isostatic, stable along its mechanisms"
-                                     : "");
-}
-
-void print_import_json(const ImportArguments& a, const ForeignPacking& file, const Imported& imported, Json object) {
-    object["state"] = a.output;
-    object["notes"] = file.notes;
-    object[grains_of(imported.state.packing)] = imported.state.packing.disk_count();
-    if (!imported.state.packing.bars.empty()) {
-        object["bodies"] = Bodies(imported.state.packing).count();
-    }
-    if (imported.held) {
-        object["load"] = object["verdict"] = nullptr;
-        print_json(object);
-        return;
-    }
-    object["load"] = {
-        {"stress", stress_of(imported.state.load)},
-        {"kind", word_of(imported.state.load.kind, load_kind_words)},
-        {"by_default",
-         {{"stress", a.stress.empty() && !imported.load_of_file}, {"kind", a.load.empty() && !imported.load_of_file}}}};
-    object["verdict"] = to_string(imported.verdict());
-    answers::add_untold(object, imported.untold, imported.truth.verdict);
-    print_json(object);
+    answers::add_untold(out, found.untold, found.truth.verdict);
+    out.item("verdict", to_string(found.verdict()), std::string(to_string(found.verdict())),
+             "{}: {} {}, {} contacts, solid fraction {:.6f}{}", a.output, packing.disk_count(), grains,
+             std::ranges::count_if(state.contacts, [](const Contact& c) { return c.is_unilateral(); }),
+             packing.solid_fraction(),
+             found.untold.any()
+                 ? fmt::format("; {}; {} of the stored doubles", found.untold.words(), to_string(found.truth.verdict))
+             : found.truth.claims.minimum ? "; not isostatic, stable along its mechanisms"
+                                          : "");
+    return out;
 }
 
 /// What the user may try where no vertex is proved. Empty: no advice.
@@ -481,11 +473,7 @@ int import(const ImportArguments& arguments) {
     if (!a.moved.empty()) {
         write_output(a.moved, moves_csv(imported, moves), moves_mark);
     }
-    if (a.common.json) {
-        print_import_json(a, file, imported, provenance);
-    } else {
-        print_import(a, file, imported, moves);
-    }
+    print(import_answer(a, file, imported, moves, provenance), a.common);
     return imported.held ? 0 : status_of(imported.verdict());
 }
 

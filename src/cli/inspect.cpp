@@ -67,11 +67,8 @@ int inspect(const InspectArguments& arguments) {
     if (!arguments.contacts.empty()) {
         write_output(arguments.contacts, contact_table(file.state, answer.truth), contact_table_mark);
     }
-    if (arguments.common.json) {
-        print_json(answers::to_json(answer, arguments.file));
-    } else {
-        say_lines(answers::to_text(answer, arguments.at.has_value()));
-    }
+    print(answers::to_answer(answer, arguments.file, arguments.at.has_value(), arguments.common.json),
+          arguments.common);
     return answer.result.ok() ? status_of(answer.result.value().record.verdict)
                               : status_of(answer.result.failure().kind);
 }

@@ -7,32 +7,21 @@ namespace isostat::cli {
 
 namespace {
 
-void print_plan(const Scene& scene) {
-    Json object;
-    object["scene"] = scene.file;
-    for (const PlanEntry& entry : make_plan(scene)) {
-        object["plan"].push_back(
-            {{"kind", entry.kind}, {"name", entry.name}, {"used", entry.used}, {"reason", entry.reason}});
-    }
-    object["programme"] = json::array_of(scene.programme, [](const ProgrammeStep& step) { return describe(step); });
-    for (const Setting& setting : scene.settings) {
-        object["settings"].push_back(
-            {{"section", setting.section}, {"key", setting.key}, {"value", setting.value}, {"line", setting.line}});
-    }
-    print_json(object);
-}
-
-/// The effective scene: valid TOML, so that it can be saved and changed.
-void print_settings(const Scene& scene) {
+/// The effective scene: its text is valid TOML, so that it can be saved and changed.
+void add_settings(answers::Answer& out, const Scene& scene) {
+    answers::say(out.text, "# {} with every default:\n", scene.file);
     std::string section;
     for (const Setting& setting : scene.settings) {
+        out.json["settings"].push_back(
+            {{"section", setting.section}, {"key", setting.key}, {"value", setting.value}, {"line", setting.line}});
         const bool new_step = setting.section == "[programme]" && setting.key == "do";
         if (setting.section != section || new_step) {
             section = setting.section;
-            say("\n[{}]\n", section);
+            answers::say(out.text, "\n[{}]\n", section);
         }
         const std::string assignment = fmt::format("{} = {}", setting.key, setting.value);
-        say("{:<44} # {}\n", assignment, setting.line > 0 ? fmt::format("line {}", setting.line) : "default");
+        answers::say(out.text, "{:<44} # {}\n", assignment,
+                     setting.line > 0 ? fmt::format("line {}", setting.line) : "default");
     }
 }
 
@@ -43,29 +32,23 @@ int plan(const PlanArguments& arguments) {
     if (!scene.start.empty()) {
         start_from_file(scene); // a start that a run would refuse is refused here
     }
-    if (arguments.common.json) {
-        print_plan(scene);
-        return done;
+    answers::Answer out;
+    out.item("scene", scene.file);
+    std::string used = "# used:\n", left_out = "# left out:\n";
+    for (const PlanEntry& entry : make_plan(scene)) {
+        out.json["plan"].push_back(
+            {{"kind", entry.kind}, {"name", entry.name}, {"used", entry.used}, {"reason", entry.reason}});
+        answers::say(entry.used ? used : left_out, "#   {:<7} {}: {}\n", entry.kind, entry.name, entry.reason);
     }
-    const std::vector<PlanEntry> entries = make_plan(scene);
-    for (const bool used : {true, false}) {
-        say("# {}\n", used ? "used:" : "left out:");
-        for (const PlanEntry& entry : entries) {
-            if (entry.used == used) {
-                say("#   {:<7} {}: {}\n", entry.kind, entry.name, entry.reason);
-            }
-        }
-        say("#\n");
+    out.text = used + "#\n" + left_out + "#\n" + (scene.programme.empty() ? "" : "# programme:\n");
+    out.item("programme", Json::array());
+    for (const ProgrammeStep& step : scene.programme) {
+        out.json["programme"].push_back(describe(step));
+        answers::say(out.text, "#   {}. {}\n", out.json["programme"].size(), describe(step));
     }
-    if (!scene.programme.empty()) {
-        say("# programme:\n");
-        for (std::size_t s = 0; s < scene.programme.size(); ++s) {
-            say("#   {}. {}\n", s + 1, describe(scene.programme[s]));
-        }
-        say("#\n");
-    }
-    say("# {} with every default:\n", scene.file);
-    print_settings(scene);
+    out.text += scene.programme.empty() ? "" : "#\n";
+    add_settings(out, scene);
+    print(std::move(out), arguments.common);
     return done;
 }
 

@@ -82,14 +82,8 @@ int plateau(const PlateauArguments& a) {
     if (!a.csv.empty()) {
         write_output(a.csv, answers::to_csv(result), answers::plateau_head);
     }
-    const answers::PlateauAnswer answer{a.file, a.strain, file, result, told, thresholds};
-    if (a.common.json) {
-        Json object = document("isostat-plateau 1", a.common);
-        answers::add_plateau(object, answer);
-        print_json(object);
-    } else {
-        say_lines(answers::to_text(answer));
-    }
+    print(answers::to_answer({a.file, a.strain, file, result, told, thresholds}, a.common.json), a.common,
+          "isostat-plateau 1");
     if (!told.backbone.empty()) {
         return done;
     }

@@ -79,96 +79,98 @@ Read from_foreign(const SnapArguments& a) {
     return out;
 }
 
-Json json_of(const SnapArguments& a, const Read& read, const compare::Snap& snap) {
-    Json out;
-    out["program"] = program_name();
-    out["command"] = a.common.command;
-    out["snapped_from"] = a.file;
-    out["contacts"] = read.words;
-    out["N_f"] = snap.counting.dof_count;
-    out["N"] = snap.counting.contact_count;
-    out["rank"] = snap.counting.rank;
-    out["h"] = snap.counting.hyperstaticity;
-    out["k"] = snap.counting.mechanisms;
-    out["rattlers"] = snap.rattlers;
-    out["outcome"] = to_string(snap.outcome);
-    out["reason"] = snap.reason;
-    out["distance"] = or_null(snap.distance);
-    out["walls"] = or_null(snap.walls);
-    if (!read.forces.empty() && snap.counting.hyperstaticity == 0 && snap.counting.mechanisms == 0) {
-        const double mean = compare::mean_force(read.forces);
-        const compare::ForceSplit split = compare::split_forces(read.soft, read.forces, mean, snap);
-        const std::string units =
-            split.rest > compare::force_agreement ? split.units.words(compare::force_agreement) : "";
-        out["forces"] = {{"mean", or_null(mean)},
-                         {"rest", or_null(split.rest)},
-                         {"stiffness", or_null(split.stiffness)},
-                         {"factor", or_null(split.units.factor)},
-                         {"rest_in_units", or_null(split.units.left)},
-                         {"units", units},
-                         {"contact", std::isfinite(split.rest)
-                                         ? Json(to_string(split.worst, read.soft.packing.dimension))
-                                         : Json()}};
+/// The forces of the file against those that balance there.
+void add_forces(answers::Answer& out, const Read& read, const compare::Snap& snap) {
+    if (read.forces.empty() || snap.counting.hyperstaticity != 0 || snap.counting.mechanisms != 0) {
+        return;
+    }
+    const double mean = compare::mean_force(read.forces);
+    const compare::ForceSplit split = compare::split_forces(read.soft, read.forces, mean, snap);
+    const std::string units = split.rest > compare::force_agreement ? split.units.words(compare::force_agreement) : "";
+    const std::string contact = std::isfinite(split.rest) ? to_string(split.worst, read.soft.packing.dimension) : "";
+    out.item("forces", {{"mean", or_null(mean)},
+                        {"rest", or_null(split.rest)},
+                        {"stiffness", or_null(split.stiffness)},
+                        {"factor", or_null(split.units.factor)},
+                        {"rest_in_units", or_null(split.units.left)},
+                        {"units", units},
+                        {"contact", contact.empty() ? Json() : Json(contact)}});
+    if (contact.empty()) {
+        return;
+    }
+    out.line("forces",
+             "of the file differ by at most {} mean forces from those that balance at its coordinates, in {}{}",
+             rounded_up(split.rest, 2), contact,
+             std::isfinite(split.stiffness)
+                 ? fmt::format("; those by at most {} from the ones at the vertex", rounded_up(split.stiffness, 2))
+                 : "");
+    if (!units.empty()) {
+        out.line("", "{}", units);
+    }
+}
+
+/// The state to write, if any, with words on it.
+struct Found {
+    std::optional<State> state;
+    std::string reason;
+    double distance = 0;
+    std::optional<bool> unique{}; ///< known where the list or the way downhill has a vertex
+};
+
+Found state_of(const SnapArguments& a, const Read& read, const compare::Snap& snap) {
+    const int dimension = read.soft.packing.dimension;
+    Found out{std::nullopt, snap.reason, snap.distance};
+    if (snap.outcome == compare::SnapOutcome::vertex) {
+        auto state = compare::with_resting_rattlers(snap, a.seed);
+        out.unique = true;
+        out.reason = state.ok() ? "" : state.failure().message(dimension);
+        out.state = state.ok() ? std::optional(std::move(state.value())) : std::nullopt;
+    } else if (a.exchange) {
+        auto found = compare::exchange(read.soft, a.seed);
+        if (!found.ok() || found.value().truth.verdict != Verdict::proved) {
+            out.reason +=
+                "; downhill: " + (found.ok() ? "the vertex is not proved" : found.failure().message(dimension));
+            return out;
+        }
+        compare::Exchanged& e = found.value();
+        out.unique = false;
+        out.distance = e.distance;
+        out.reason +=
+            fmt::format("; the vertex downhill is proved, not that it is the only one near: without{}; with{}",
+                        compare::names_of(compare::without(read.soft.contacts, e.contacts), dimension),
+                        compare::names_of(compare::without(e.contacts, read.soft.contacts), dimension));
+        out.state = std::move(e.state);
     }
     return out;
 }
 
-/// The state to write, with words on it; nothing: no state.
-std::optional<State> state_of(const SnapArguments& a, const Read& read, const compare::Snap& snap, Json& report) {
-    if (snap.outcome == compare::SnapOutcome::vertex) {
-        auto state = compare::with_resting_rattlers(snap, a.seed);
-        report["unique"] = true;
-        report["reason"] = state.ok() ? "" : state.failure().message(read.soft.packing.dimension);
-        return state.ok() ? std::optional(std::move(state.value())) : std::nullopt;
-    }
-    if (!a.exchange) {
-        return std::nullopt;
-    }
-    const int dimension = read.soft.packing.dimension;
-    auto found = compare::exchange(read.soft, a.seed);
-    if (!found.ok() || found.value().truth.verdict != Verdict::proved) {
-        report["reason"] = snap.reason + "; downhill: " +
-                           (found.ok() ? "the vertex is not proved" : found.failure().message(dimension));
-        return std::nullopt;
-    }
-    compare::Exchanged& e = found.value();
-    report["unique"] = false;
-    report["distance"] = or_null(e.distance);
-    report["reason"] =
-        fmt::format("{}; the vertex downhill is proved, not that it is the only one near: without{}; with{}",
-                    snap.reason, compare::names_of(compare::without(read.soft.contacts, e.contacts), dimension),
-                    compare::names_of(compare::without(e.contacts, read.soft.contacts), dimension));
-    return std::move(e.state);
-}
-
-void print(const SnapArguments& a, const Read& read, const compare::Snap& snap, const Json& report, bool written) {
+/// The values begin the provenance of the state.
+answers::Answer snap_answer(const SnapArguments& a, const Read& read, const compare::Snap& snap, const Found& found) {
+    const Counting& c = snap.counting;
+    answers::Answer out{.width = 9};
     for (const std::string& note : read.notes) {
-        say("          {}\n", note);
+        out.line("", "{}", note);
     }
-    say("contacts  {}: N_f = {}, N = {}, rank {}, h = {}, k = {}, {} rattlers\n", read.words, snap.counting.dof_count,
-        snap.counting.contact_count, snap.counting.rank, snap.counting.hyperstaticity, snap.counting.mechanisms,
-        snap.rattlers.size());
-    say("snap      {}{}{}\n", to_string(snap.outcome), report["reason"].get<std::string>().empty() ? "" : ": ",
-        report["reason"].get<std::string>());
-    if (!report["distance"].is_null()) {
-        say("distance  of a {} with a force from its true place at most {}\n", grain_word(read.soft.packing.dimension),
-            rounded_up(report["distance"].get<double>(), 3));
+    out.json = {{"program", program_name()}, {"command", a.common.command}, {"snapped_from", a.file}};
+    out.item("contacts", read.words, "contacts", "{}: N_f = {}, N = {}, rank {}, h = {}, k = {}, {} rattlers",
+             read.words, c.dof_count, c.contact_count, c.rank, c.hyperstaticity, c.mechanisms, snap.rattlers.size());
+    out.json.update(
+        {{"N_f", c.dof_count}, {"N", c.contact_count}, {"rank", c.rank}, {"h", c.hyperstaticity}, {"k", c.mechanisms}});
+    out.item("rattlers", snap.rattlers);
+    out.item("outcome", to_string(snap.outcome), "snap", "{}{}{}", to_string(snap.outcome),
+             found.reason.empty() ? "" : ": ", found.reason);
+    out.item("reason", found.reason);
+    out.item("distance", or_null(found.distance));
+    if (std::isfinite(found.distance)) {
+        out.line("distance", "of a {} with a force from its true place at most {}",
+                 grain_word(read.soft.packing.dimension), rounded_up(found.distance, 3));
     }
-    if (const auto forces = report.find("forces"); forces != report.end() && !(*forces)["rest"].is_null()) {
-        say("forces    of the file differ by at most {} mean forces from those that balance at its coordinates, "
-            "in {}",
-            rounded_up((*forces)["rest"].get<double>(), 2), (*forces)["contact"].get<std::string>());
-        say("{}\n", (*forces)["stiffness"].is_null()
-                        ? ""
-                        : fmt::format("; those by at most {} from the ones at the vertex",
-                                      rounded_up((*forces)["stiffness"].get<double>(), 2)));
-        if (const std::string units = (*forces)["units"]; !units.empty()) {
-            say("          {}\n", units);
-        }
+    out.item("walls", or_null(snap.walls));
+    add_forces(out, read, snap);
+    if (found.unique) {
+        out.item("unique", *found.unique);
     }
-    if (written) {
-        say("written   {}\n", a.output);
-    }
+    return out;
 }
 
 } // namespace
@@ -182,29 +184,26 @@ int snap(const SnapArguments& a) {
         compare::add_law(read, {a.law == "hertz" ? compare::ForceLaw::hertz : compare::ForceLaw::linear, a.stiffness});
     }
     const compare::Snap snap = compare::snap(read.soft);
-    Json report = json_of(a, read, snap);
-    std::optional<State> state = state_of(a, read, snap, report);
+    Found found = state_of(a, read, snap);
+    answers::Answer answer = snap_answer(a, read, snap, found);
     compare::Untold untold;
-    if (state) {
-        const Certification truth = certify(*state);
-        untold = compare::untold_by(read.rounding, *state, truth);
-        answers::add_untold(report, untold, truth.verdict);
-        Json provenance = report;
+    if (found.state) {
+        const Certification truth = certify(*found.state);
+        untold = compare::untold_by(read.rounding, *found.state, truth);
+        answers::add_untold(answer, untold, truth.verdict);
+        Json provenance = answer.json;
         provenance["rounding"] = or_null(read.rounding);
-        state->provenance = json::dumped(provenance);
-        write_state(a.output, *state);
+        found.state->provenance = json::dumped(provenance);
+        write_state(a.output, *found.state);
+        answer.line("written", "{}", a.output);
     }
-    if (a.common.json) {
-        report["state"] = state ? Json(a.output) : Json();
-        print_json(report);
-    } else {
-        print(a, read, snap, report, state.has_value());
-        if (untold.any()) {
-            say("undecided {}\n", untold.words());
-        }
+    if (untold.any()) {
+        answer.line("undecided", "{}", untold.words());
     }
+    answer.item("state", found.state ? Json(a.output) : Json());
+    print(std::move(answer), a.common);
     return untold.any()                                                                                      ? undecided
-           : state                                                                                           ? done
+           : found.state                                                                                     ? done
            : snap.outcome == compare::SnapOutcome::vertex || snap.outcome == compare::SnapOutcome::undecided ? undecided
                                                                                                              : failed;
 }

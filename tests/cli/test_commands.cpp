@@ -172,6 +172,41 @@ BOOST_FIXTURE_TEST_CASE(json_output_is_one_object_and_nothing_else, scratch::InF
     BOOST_TEST(json_of(run({"report", folder.at("run"), "--json", "--no-charts"}))["files"].size() > 3U);
 }
 
+BOOST_AUTO_TEST_CASE(every_line_of_an_answer_has_a_value_in_its_object) {
+    const std::vector<std::array<const char*, 2>> keys{{"degrees of freedom N_f", "N_f"},
+                                                       {"contacts N", "N"},
+                                                       {"rank, stored", "rank"},
+                                                       {"self-stresses h", "h"},
+                                                       {"mechanisms k", "k"},
+                                                       {"box", "length"},
+                                                       {"solid fraction", "solid_fraction_without_rattlers"},
+                                                       {"force-carrying contacts", "backbone"},
+                                                       {"supported interval", "interval_low"},
+                                                       {" ", "interval_high"},
+                                                       {"smallest force", "min_force_between"},
+                                                       {"smallest gap", "min_gap"},
+                                                       {"largest gap of a contact", "gap_residual"},
+                                                       {"smallest singular value", "sigma_min_bound"},
+                                                       {"decided by", "decided_by"},
+                                                       {"isostatic equilibrium", "verdict"},
+                                                       {"true configuration", "true_configuration/exists"},
+                                                       {"  its forces", "true_configuration/forces"},
+                                                       {"coordination number", "coordination"},
+                                                       {"stress of the contacts", "contact_stress"},
+                                                       {"walls held", "box/grains"},
+                                                       {"jammed collectively", "box/jammed/collective"}};
+    const json object = json_of(run({"inspect", scratch::data("vertex100.txt"), "--json"}));
+    std::istringstream lines(run({"inspect", scratch::data("vertex100.txt")}).out);
+    for (std::string line; std::getline(lines, line);) {
+        std::string key = line.substr(0, line.find(' ')); // where the table has none
+        for (const auto& [label, known] : keys) {
+            key = line.starts_with(label) ? known : key;
+        }
+        const json::json_pointer where("/" + key);
+        BOOST_TEST((object.contains(where) && !object.at(where).is_null()), "not in the object: " << line);
+    }
+}
+
 BOOST_FIXTURE_TEST_CASE(a_sample_that_fails_is_a_result_and_a_tie_is_undecided, scratch::InFolder) {
     ran(folder, scene_from(scratch::data("vertex100.txt"), up(6), "[run]\nmax_arcs = 3\n"), 1, {"failed", "max_arcs"});
     BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "\"status\": \"failed: "));

@@ -72,7 +72,9 @@ struct WallFacts {
 };
 /// In the order of the kinds.
 inline constexpr std::array wall_facts{
+    // exact: columns
     WallFacts{ContactKind::lower_wall, -1, false, {"left", "bottom", "back"}, {-1, -2, -5}},
+    // exact: columns
     WallFacts{ContactKind::upper_wall, +1, true, {"right", "top", "front"}, {-3, -4, -6}},
 };
 static_assert(static_cast<std::size_t>(ContactKind::held) - static_cast<std::size_t>(ContactKind::lower_wall) ==

@@ -149,7 +149,7 @@ void add_true_vertex(Answer& out, const Certification& certification) {
                            {"unique_radius", or_null(c.vertex->unique_radius)},
                            {"rank", c.counting->rank},
                            {"h", 0},
-                           {"k", 0},
+                           {"k", c.counting->hypostaticity},
                            {"sigma_min", or_null(sigma)},
                            {"decided_by", to_string(c.forces ? c.forces->rung : c.vertex->rung)}});
         const ForceSigns& s = certification.signs;

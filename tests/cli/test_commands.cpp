@@ -4,6 +4,8 @@
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
+#include <fmt/format.h>
+
 using namespace program;
 using isostat::state_text;
 using nlohmann::json;
@@ -205,6 +207,13 @@ BOOST_AUTO_TEST_CASE(every_line_of_an_answer_has_a_value_in_its_object) {
         const json::json_pointer where("/" + key);
         BOOST_TEST((object.contains(where) && !object.at(where).is_null()), "not in the object: " << line);
     }
+}
+
+BOOST_AUTO_TEST_CASE(the_mechanisms_of_the_true_configuration_are_those_of_the_text) {
+    const std::string file = scratch::data("clumps/dimer_20_2.json");
+    const int k = json_of(run({"inspect", file, "--json"}))["true_configuration"]["k"].get<int>();
+    BOOST_TEST(k > 0);
+    BOOST_TEST(contains(run({"inspect", file}).out, fmt::format("h = 0, k = {} there", k)));
 }
 
 BOOST_FIXTURE_TEST_CASE(a_sample_that_fails_is_a_result_and_a_tie_is_undecided, scratch::InFolder) {

@@ -1,6 +1,6 @@
 #include "checker/courses.hpp"
 #include "checker/images.hpp"
-#include "core/index.hpp"
+#include "checker/index.hpp"
 
 #include <fmt/format.h>
 

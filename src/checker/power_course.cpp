@@ -1,5 +1,5 @@
 #include "checker/courses.hpp"
-#include "core/index.hpp"
+#include "checker/index.hpp"
 
 #include <utility>
 

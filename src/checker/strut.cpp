@@ -1,7 +1,7 @@
 #include "checker/strut.hpp"
 
 #include "checker/forces.hpp"
-#include "core/index.hpp"
+#include "checker/index.hpp"
 
 #include <algorithm>
 #include <cmath>

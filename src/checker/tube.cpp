@@ -1,8 +1,8 @@
 #include "checker/tube.hpp"
 
+#include "checker/index.hpp"
 #include "checker/inverse.hpp"
 #include "checker/solver.hpp"
-#include "core/index.hpp"
 
 #include <array>
 

@@ -1,6 +1,6 @@
 #include "checker/forces.hpp"
 
-#include "core/index.hpp"
+#include "checker/index.hpp"
 
 #include <bit>
 #include <optional>

@@ -7,7 +7,6 @@
 
 #include <isostat/packing/load.hpp>
 
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <vector>
@@ -97,10 +96,5 @@ bool vary_together(const Problem& problem, const std::vector<int>& contacts, con
 /// vanishes where `load` does and for all radii (K7; no entry is left out,
 /// proofs/definition.md). Ascending; nothing when the pattern has no perfect matching.
 std::optional<std::vector<int>> structural_zeros(const Problem& problem, const Forces& load);
-
-/// Whether a number is among those that `structural_zeros` returned.
-inline bool contains(const std::vector<int>& sorted, std::size_t value) {
-    return std::binary_search(sorted.begin(), sorted.end(), static_cast<int>(value));
-}
 
 } // namespace isostat::checker

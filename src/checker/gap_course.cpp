@@ -1,7 +1,7 @@
 #include "checker/at_wall.hpp"
 #include "checker/courses.hpp"
 #include "checker/images.hpp"
-#include "core/index.hpp"
+#include "checker/index.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // The claim about the forces.
 #include "checker/evidence.hpp"
-#include "core/index.hpp"
+#include "checker/index.hpp"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 #include "checker/bounds.hpp"
 #include "checker/first_order.hpp"
 #include "checker/forces.hpp"
+#include "checker/index.hpp"
 #include "checker/vertex.hpp"
-#include "core/index.hpp"
 
 #include <Eigen/Dense>
 #include <fmt/format.h>

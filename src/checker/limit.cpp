@@ -3,8 +3,8 @@
 #include "checker/choice.hpp"
 #include "checker/first_order.hpp"
 #include "checker/forces.hpp"
+#include "checker/index.hpp"
 #include "checker/strut.hpp"
-#include "core/index.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "checker/normal_factor.hpp"
 
+#include "checker/index.hpp"
 #include "checker/problem.hpp"
-#include "core/index.hpp"
 
 #include <numeric>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Cholesky's method in double for A^T A, with a bound of its roundings (proofs/checker.md, K30).
 
-#include "core/index.hpp"
+#include "checker/index.hpp"
 
 #include <Eigen/Dense>
 

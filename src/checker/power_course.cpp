@@ -1,6 +1,6 @@
 #include "checker/at_wall.hpp"
 #include "checker/courses.hpp"
-#include "core/index.hpp"
+#include "checker/index.hpp"
 
 #include <utility>
 

@@ -3,9 +3,9 @@
 
 #include "checker/first_order.hpp"
 #include "checker/forces.hpp"
+#include "checker/index.hpp"
 #include "checker/strut.hpp"
 #include "checker/vertex.hpp"
-#include "core/index.hpp"
 
 #include <fmt/format.h>
 

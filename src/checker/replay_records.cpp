@@ -1,10 +1,10 @@
 // The numbers of records against the vertices of a replay.
 #include "checker/choice.hpp"
+#include "checker/index.hpp"
 #include "checker/newton.hpp"
 #include "checker/rational.hpp"
 #include "checker/replay.hpp"
 #include "checker/vertex.hpp"
-#include "core/index.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // Which contact the rule opens, and which coordinate is held.
 #include "checker/choice.hpp"
+#include "checker/index.hpp"
 #include "checker/replay.hpp"
 #include "checker/strut.hpp"
-#include "core/index.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include "checker/bounds.hpp"
+#include "checker/index.hpp"
 #include "checker/inverse.hpp"
 #include "checker/normal_factor.hpp"
 #include "checker/wide.hpp"
-#include "core/index.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>

@@ -1,8 +1,8 @@
 #include "checker/solver.hpp"
 
+#include "checker/index.hpp"
 #include "checker/inverse.hpp"
 #include "checker/normal_factor.hpp"
-#include "core/index.hpp"
 
 #include <klu.h>
 

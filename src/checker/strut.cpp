@@ -2,7 +2,7 @@
 
 #include "checker/at_wall.hpp"
 #include "checker/forces.hpp"
-#include "core/index.hpp"
+#include "checker/index.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // First-order decisions that records name.
 #include "checker/choice.hpp"
 #include "checker/first_order.hpp"
+#include "checker/index.hpp"
 #include "checker/recorded_arc.hpp"
-#include "core/index.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #include "checker/tube.hpp"
 
 #include "checker/at_wall.hpp"
+#include "checker/index.hpp"
 #include "checker/inverse.hpp"
 #include "checker/solver.hpp"
-#include "core/index.hpp"
 
 #include <array>
 

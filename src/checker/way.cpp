@@ -1,7 +1,7 @@
 #include "checker/way.hpp"
 
 #include "checker/courses.hpp"
-#include "core/index.hpp"
+#include "checker/index.hpp"
 
 #include <fmt/format.h>
 

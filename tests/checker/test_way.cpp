@@ -1,8 +1,8 @@
 // Tubes, gaps and power along a curve that is known: a disk that rolls on a fixed one.
 #include "checker/courses.hpp"
+#include "checker/index.hpp"
 #include "checker/tube.hpp"
 #include "checker/way.hpp"
-#include "core/index.hpp"
 #include "support/channel_roll.hpp"
 #include "support/crafted.hpp"
 #include "support/spheres.hpp"

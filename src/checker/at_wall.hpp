@@ -1,8 +1,11 @@
 #pragma once
 /// \file
-/// A disk and a wall as the checker sees them: the only code of the checker that says where a wall stands.
+/// A disk and a wall as the checker sees them: the only code of the checker that says which walls there are and where
+/// a wall stands.
 
-#include <isostat/core/contact.hpp>
+#include "checker/index.hpp"
+
+#include <isostat/packing/packing.hpp>
 
 #include <cstddef>
 #include <optional>
@@ -34,5 +37,22 @@ struct AtWall {
         return distance([&of](std::size_t k) -> decltype(auto) { return of[k]; });
     }
 };
+
+/// \pre `contact.is_wall()`
+inline WallKind wall_of(const Packing& packing, const Contact& contact) {
+    return (contact.kind == ContactKind::upper_wall ? packing.walls.upper : packing.walls.lower)[at(contact.j)];
+}
+
+/// Calls visit(contact) for a disk and every wall that is there, axis after axis. The list is the checker's own, so
+/// that a wall that the library forgets is not forgotten here.
+template <class Visit> void for_each_wall(const Packing& packing, int disk, Visit visit) {
+    for (int a = 0; a < packing.dimension; ++a) {
+        for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+            if (const Contact wall(kind, disk, a); wall_of(packing, wall) != WallKind::absent) {
+                visit(wall);
+            }
+        }
+    }
+}
 
 } // namespace isostat::checker

@@ -104,7 +104,7 @@ std::optional<std::vector<Contact>> near_pairs(const Packing& packing, const std
             }
         });
     for (std::size_t i = 0; i < n; ++i) {
-        packing.walls.for_each(packing.dimension, static_cast<int>(i), [&](const Contact& wall) {
+        for_each_wall(packing, static_cast<int>(i), [&](const Contact& wall) {
             if (!fixed(i) && gap_at(packing, q, wall) < margin) {
                 pairs.push_back(wall);
             }

@@ -309,7 +309,7 @@ std::vector<Contact> GapCourses::near_walls(const Tube& tube, const std::vector<
     std::vector<Contact> pairs;
     for (std::size_t i = 0; i < disks; ++i) {
         const double near = (packing.radius[i] + way[i] + way[disks]) * more;
-        packing.walls.for_each(packing.dimension, static_cast<int>(i), [&](const Contact& wall) {
+        for_each_wall(packing, static_cast<int>(i), [&](const Contact& wall) {
             if (moving_.takes_part(wall) && AtWall(wall, packing.layout()).distance_in(q) <= near) {
                 pairs.push_back(wall);
             }

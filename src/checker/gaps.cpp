@@ -35,7 +35,7 @@ bool exists_and_moves(const Packing& packing, const Contact& pair) {
     if (pair.of_disks()) {
         return !is_fixed(packing, pair.i) || !is_fixed(packing, pair.j);
     }
-    const WallKind wall = pair.is_wall() ? packing.walls.of(pair) : WallKind::absent;
+    const WallKind wall = pair.is_wall() ? wall_of(packing, pair) : WallKind::absent;
     return wall == WallKind::movable || (wall == WallKind::fixed && !is_fixed(packing, pair.i));
 }
 
@@ -186,8 +186,8 @@ std::optional<Contact> fixed_overlap(const Problem& problem, const State& state)
     for (std::size_t k = 0; k < fixed.size(); ++k) {
         const int i = fixed[k];
         std::optional<Contact> overlap;
-        state.packing.walls.for_each(layout.dimension, i, [&](const Contact& wall) {
-            if (!overlap && state.packing.walls.of(wall) == WallKind::fixed &&
+        for_each_wall(state.packing, i, [&](const Contact& wall) {
+            if (!overlap && wall_of(state.packing, wall) == WallKind::fixed &&
                 AtWall(wall, layout).distance_in(q) < radius(i)) {
                 overlap = wall;
             }
@@ -236,7 +236,7 @@ void sweep(const std::vector<Placed>& places, const Approximation& at, double wi
 
 void sweep_walls(const Packing& packing, Collector& collector) {
     for (int i = 0; i < packing.disk_count(); ++i) {
-        packing.walls.for_each(packing.dimension, i, [&collector](const Contact& wall) { collector.offer(wall); });
+        for_each_wall(packing, i, [&collector](const Contact& wall) { collector.offer(wall); });
     }
 }
 

@@ -238,7 +238,7 @@ std::string unsupported_contact(const Packing& packing, const Contact& contact) 
     if (contact.kind == ContactKind::held) {
         return "the state has a " + name() + ", which is no contact: not checked";
     }
-    if (contact.is_wall() && packing.walls.of(contact) == WallKind::absent) {
+    if (contact.is_wall() && wall_of(packing, contact) == WallKind::absent) {
         return "there is no wall for the contact " + name();
     }
     return {};

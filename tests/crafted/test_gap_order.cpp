@@ -1,6 +1,7 @@
 // Exact order of gaps, and rattlers of all initial parts of a contact list at once, against slow twins.
 
 #include "carrying_by_angles.hpp"
+#include "crafted/able.hpp"
 #include "oracle/pairs.hpp"
 #include "support/free_grains.hpp"
 #include "support/scale.hpp"
@@ -9,7 +10,6 @@
 #include <isostat/exact/number.hpp>
 
 #include <crafted/gap_order.hpp>
-#include <crafted/peeling.hpp>
 #include <mpfr.h>
 
 namespace {

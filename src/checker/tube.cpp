@@ -236,8 +236,7 @@ void Tube::expand() {
         }
     }
     spread_ = std::max(2.0, *std::max_element(spread.begin(), spread.end()));
-    // exact: smallest curvature, squared (checker.md K16)
-    curvature_ = root_above(std::max(4.0, *std::max_element(fourth.begin(), fourth.end())));
+    curvature_ = root_above(std::max(4.0, *std::max_element(fourth.begin(), fourth.end()))); // checker.md K16
     const double unit = moving_.state.packing.min_radius();
     longest_ = 0.2 * unit; // cost: longest piece
     std::vector<double> right(contacts + 1, 0.0);

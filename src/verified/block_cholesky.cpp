@@ -117,8 +117,7 @@ void BlockCholesky::arrange(const std::vector<int>& order) {
         }
         for (std::size_t k = 0; k < count; ++k) {
             const std::array<double, 2>& v = parts[k].value;
-            // exact: size of a block
-            std::array<double, 4>& d = diagonal_[static_cast<std::size_t>(parts[k].place)].value;
+            auto& d = diagonal_[static_cast<std::size_t>(parts[k].place)].value;
             d[0] += v[0] * v[0];
             d[1] += v[1] * v[0];
             d[2] += v[0] * v[1];
@@ -432,8 +431,7 @@ double BlockCholesky::largest_ratio(const std::vector<double>& relative, double 
         largest_x = std::max(largest_x, image);
     }
     for (double& c : x) {
-        // bounds.md V1
-        c = std::max(c / largest_x, 1e-9); // any x > 0 gives a bound; the ratios must not over- or underflow
+        c = std::max(c / largest_x, 1e-9); // bounds.md V1: any x > 0 gives a bound; no ratio may over- or underflow
     }
     return largest;
 }

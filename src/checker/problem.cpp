@@ -112,16 +112,16 @@ Row::Row(const Contact& contact, const Layout& layout) {
         sign[k] = times;
         axis[k] = static_cast<std::uint8_t>(along);
     };
-    const auto axis = static_cast<std::size_t>(contact.j);
+    const auto normal = static_cast<std::size_t>(contact.j);
     if (contact.kind == ContactKind::held) {
         add(static_cast<std::size_t>(contact.i), 1, 0);
         return;
     }
     if (contact.is_wall()) {
         const AtWall place(contact, layout);
-        add(place.disk, place.sign, axis);
+        add(place.disk, place.sign, normal);
         if (place.wall) {
-            add(*place.wall, -place.sign, axis);
+            add(*place.wall, -place.sign, normal);
         }
         return;
     }
@@ -395,15 +395,15 @@ void Problem::find_immovable(const State& state) {
         most_touched = most_touched_of(state.contacts, layout.disks);
     }
     for (std::size_t l = 0; l < rows.size(); ++l) {
-        std::array<int, most_axes> sum{}; // along an axis all entries of a row are one number, up to a sign
+        std::array<int, most_axes> along{}; // along an axis all entries of a row are one number, up to a sign
         for (std::size_t k = 0; k < static_cast<std::size_t>(rows[l].count); ++k) {
             const int dof = dof_of[static_cast<std::size_t>(rows[l].coordinate[k])];
             if (const int a = dof < 0 ? -1 : axis_of(static_cast<std::size_t>(dof)); a >= 0) {
-                sum[static_cast<std::size_t>(a)] += rows[l].sign[k];
+                along[static_cast<std::size_t>(a)] += rows[l].sign[k];
             }
         }
         for (std::size_t a = 0; a < layout.axes(); ++a) {
-            if (sum[a] != 0) {
+            if (along[a] != 0) {
                 immovable[a].acting.push_back(static_cast<int>(l));
             }
         }

@@ -133,8 +133,8 @@ class Sequence {
         }
         // h >= N - N_f + rigid motions, and h does not decrease.
         const auto most = [&](auto counts) {
-            const auto first = std::ranges::find_if(ends_, [&](int m) { return excess(counts(m)) > 0; });
-            return first == ends_.end() ? size() : *first - 1;
+            const auto more = std::ranges::find_if(ends_, [&](int m) { return excess(counts(m)) > 0; });
+            return more == ends_.end() ? size() : *more - 1;
         };
         const auto backbone = [this](int m) { return backbone_counts(m); };
         const int unstressed = backbone_stress_->last_without(ends_, most(backbone));

@@ -24,7 +24,7 @@ double uncertainty(const VertexEnclosure& vertex) {
     for (const double c : vertex.correction) {
         square += c * c;
     }
-    return (vertex.radius + std::sqrt(square)) * up;
+    return (vertex.radius + std::sqrt(square)) * upward;
 }
 
 class Certifier {

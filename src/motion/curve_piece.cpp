@@ -28,7 +28,7 @@ double norm(const std::vector<double>& x) {
 CurvePiece::CurvePiece(const KeptCurve& kept, const ArcCentre& at, double forward)
     : Polynomial(kept, at, forward), reach_(Polynomial::natural_reach()) {
     if (!coefficients().empty()) {
-        shift_norm_ = norm(this->shift()) * up;
+        shift_norm_ = norm(this->shift()) * upward;
         bound_coefficients();
         shorten_reach();
     }
@@ -60,14 +60,14 @@ void CurvePiece::shift_residual_of(std::size_t l) {
     const std::size_t order = coefficients().size();
     double* bound = &residual_[l * (2 * order + 1)];
     const Enclosure misses = shifted_equation(*curve().start, centre(), c, shift);
-    bound[0] = (std::abs(misses.value) + misses.radius) * up;
+    bound[0] = (std::abs(misses.value) + misses.radius) * upward;
     if (!curve().bends(l)) {
         return;
     }
     const auto d = separation_over(centre().layout(), shift, c);
-    shifted_[l] = std::sqrt(dot(d, d)) * up;
+    shifted_[l] = std::sqrt(dot(d, d)) * upward;
     for (std::size_t k = 1; k <= order; ++k) {
-        bound[k] += shifted_[l] * relative_[l * order + k - 1] / curve().target[l] * up;
+        bound[k] += shifted_[l] * relative_[l * order + k - 1] / curve().target[l] * upward;
     }
 }
 
@@ -78,7 +78,7 @@ void CurvePiece::bound_coefficients_of(std::size_t l) {
     double* bound = &residual_[l * (2 * order + 1)];
     const auto d = differences(l);
     for (std::size_t k = 1; k <= order; ++k) {
-        size[k - 1] = std::sqrt(dot(d[k], d[k])) * up;
+        size[k - 1] = std::sqrt(dot(d[k], d[k])) * upward;
     }
     if (c.kind == ContactKind::held) {
         const auto k = static_cast<std::size_t>(c.i);
@@ -170,8 +170,8 @@ CurvePiece::Misfit CurvePiece::misfit(double h) const {
             sum.turn = std::max(sum.turn, speed / curve().target[l]);
         }
     }
-    sum.value = (std::sqrt(sum.value) + curve().rest_residual) * up;
-    sum.rate = (std::sqrt(sum.rate) + sum.turn * curve().rest_residual) * up;
+    sum.value = (std::sqrt(sum.value) + curve().rest_residual) * upward;
+    sum.rate = (std::sqrt(sum.rate) + sum.turn * curve().rest_residual) * upward;
     return sum;
 }
 
@@ -189,7 +189,7 @@ CurvePiece::Motion CurvePiece::motion(double h) const {
         }
         least.speed += static_cast<double>(k) * power * norm(coefficients()[k - 1]);
     }
-    least.row_rate = (least.row_rate - loss * up) * (1 - 1e-9); // arcs.md A8
+    least.row_rate = (least.row_rate - loss * upward) * (1 - 1e-9); // arcs.md A8
     return least;
 }
 
@@ -198,29 +198,29 @@ bool CurvePiece::prove(double h) {
     if (coefficients().empty() || !(h > 0)) {
         return false;
     }
-    const double lost = inverse_norm() * (curve().norm_of(stretch(h)) + curve().rest_derivative) * up;
+    const double lost = inverse_norm() * (curve().norm_of(stretch(h)) + curve().rest_derivative) * upward;
     if (!(lost <= 0.8)) { // cost: reach of a piece (arcs.md A2)
         return false;
     }
-    const double inverse = inverse_norm() / (1 - lost) * up; // at every p(s)
+    const double inverse = inverse_norm() / (1 - lost) * upward; // at every p(s)
     const Misfit residual = misfit(h);
     const double lipschitz = curve().lipschitz;
-    const double product = inverse * inverse * lipschitz * residual.value * up;
+    const double product = inverse * inverse * lipschitz * residual.value * upward;
     if (!(product <= 0.25)) { // 0.25: arcs.md A1
         return false;
     }
-    const double radius = 2 * inverse * residual.value * up;
-    const double at_curve = inverse / (1 - inverse * lipschitz * radius) * up;
+    const double radius = 2 * inverse * residual.value * upward;
+    const double at_curve = inverse / (1 - inverse * lipschitz * radius) * upward;
     const Motion along = motion(h);
     if (!(along.row_rate > 0) || !std::isfinite(along.speed)) {
         return false;
     }
-    radius_ = shift_norm_ > 0 ? (radius + shift_norm_) * up : radius;
+    radius_ = shift_norm_ > 0 ? (radius + shift_norm_) * upward : radius;
     unique_ = lipschitz > 0 ? (1 - 1e-9) / (inverse * lipschitz) : infinity; // arcs.md A8
-    slope_error_ = at_curve * (residual.rate + residual.turn * std::sqrt(curve().spread) * radius) * up;
+    slope_error_ = at_curve * (residual.rate + residual.turn * std::sqrt(curve().spread) * radius) * upward;
     margin_ = product > 0 ? 0.25 / product : infinity;
     row_rate_ = along.row_rate;
-    speed_ = along.speed * up;
+    speed_ = along.speed * upward;
     proved_ = h;
     return true;
 }
@@ -269,15 +269,16 @@ std::optional<CurvePiece::Place> CurvePiece::locate(const std::vector<double>& x
     // 16: arcs.md A8
     const double rounding = std::sqrt(static_cast<double>(structure().size())) * u * (16 * coordinate + terms);
     const double open = uncertainty + shift_norm_; // the tube is around p + a_0
-    const double distance = (std::sqrt(square) + rounding) * up + open;
+    const double distance = (std::sqrt(square) + rounding) * upward + open;
     Place place;
     place.s = *s;
     // arcs.md A8
     place.slack = (std::abs(this->along_row(off).value) + 4 * this->row_terms() * u * (16 * coordinate + terms) +
                    this->row_norm() * open) /
-                  row_rate_ * up;
+                  row_rate_ * upward;
     // arcs.md A8
-    if (!(std::abs(*s) + place.slack <= proved_ * (1 - 1e-9)) || !(distance + speed_ * place.slack * up < unique_)) {
+    if (!(std::abs(*s) + place.slack <= proved_ * (1 - 1e-9)) ||
+        !(distance + speed_ * place.slack * upward < unique_)) {
         return std::nullopt;
     }
     return place;
@@ -292,7 +293,7 @@ int CurvePiece::direction_along(const CurvePiece& other, double s) const {
     }
     const double error =
         // 4: arcs.md A8; 64: arcs.md A8 (slopes along a row)
-        (other.row_norm() * slope_error_ + 64 * u * (sum.absolute + 4 * other.row_terms() * size)) * up;
+        (other.row_norm() * slope_error_ + 64 * u * (sum.absolute + 4 * other.row_terms() * size)) * upward;
     return sum.value > error ? 1 : -sum.value > error ? -1 : 0;
 }
 

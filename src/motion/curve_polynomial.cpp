@@ -45,7 +45,7 @@ CurvePolynomial::CurvePolynomial(const KeptCurve& curve, const ArcCentre& centre
     if (!(centre.sigma_min() > 0) || !(ratio < 1e-3)) { // arcs.md A2 (test of the gaps)
         return;
     }
-    inverse_ = (1 + 2 * ratio + 8 * u) / centre.sigma_min() * up; // bounds.md V4 (rounding, double)
+    inverse_ = (1 + 2 * ratio + 8 * u) / centre.sigma_min() * upward; // bounds.md V4 (rounding, double)
     expand();
 }
 

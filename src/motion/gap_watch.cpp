@@ -28,11 +28,11 @@ struct GapWatch::Motion {
             a.push_back(separation_over(piece.centre().layout(), coefficient, contact));
         }
         for (const auto& d : a) {
-            size.push_back(std::sqrt(dot(d, d)) * up);
+            size.push_back(std::sqrt(dot(d, d)) * upward);
         }
         const double weight = separation_weight(contact);
-        apart = weight * (piece.radius() + piece.curve().rest_radius) * up;
-        slope_error = weight * piece.slope_error() * up;
+        apart = weight * (piece.radius() + piece.curve().rest_radius) * upward;
+        slope_error = weight * piece.slope_error() * upward;
     }
 
     /// Bounds for s in [from, to].
@@ -80,9 +80,9 @@ struct GapWatch::Motion {
             course.first += order * slope_power * size[k];
             terms += slope_power * h * size[k];
         }
-        course.first *= up;
-        course.second *= up;
-        terms = (terms + size[0]) * up;
+        course.first *= upward;
+        course.second *= upward;
+        terms = (terms + size[0]) * upward;
         course.rounding = (2 * static_cast<double>(a.size()) + 24) * u * (terms + target);  // arcs.md A8
         course.slope_rounding = (2 * static_cast<double>(a.size()) + 8) * u * course.first; // 8: arcs.md A8
         return course;
@@ -90,12 +90,12 @@ struct GapWatch::Motion {
     [[nodiscard]] View view_of_wall(const Course& c, double half) const {
         View view;
         view.gap = c.x[0] - target;
-        view.gap_open = (apart + c.rounding) * up;
-        const double lost = (half * std::abs(c.v[0]) + 0.5 * half * half * c.second) * up;
+        view.gap_open = (apart + c.rounding) * upward;
+        const double lost = (half * std::abs(c.v[0]) + 0.5 * half * half * c.second) * upward;
         view.gap_low = view.gap - view.gap_open - lost - u * std::abs(view.gap);
         view.rate = c.v[0];
-        view.rate_open = (slope_error + c.slope_rounding) * up;
-        view.rate_spread = half * c.second * up;
+        view.rate_open = (slope_error + c.slope_rounding) * upward;
+        view.rate_spread = half * c.second * upward;
         return view;
     }
     [[nodiscard]] View view_of_disks(const Course& c, double half) const {
@@ -103,17 +103,17 @@ struct GapWatch::Motion {
         const double product = dot(c.x, c.v);
         const double distance = std::sqrt(dot(c.x, c.x));
         view.gap = distance - target;
-        view.gap_open = (apart + c.rounding) * up;
+        view.gap_open = (apart + c.rounding) * upward;
         // A distance is at least its projection on the line of centres in the middle of the stretch.
         const double projected = std::abs(product) / distance + c.slope_rounding;
-        const double lost = (half * projected + 0.5 * half * half * c.second) * up;
+        const double lost = (half * projected + 0.5 * half * half * c.second) * upward;
         view.gap_low = view.gap - view.gap_open - lost - u * std::abs(view.gap);
         const double farthest = distance + half * c.first + c.rounding;
         view.rate = product;
         view.rate_open = (apart * c.first + slope_error * (farthest + apart) + c.rounding * c.first +
                           c.slope_rounding * farthest + 8 * u * distance * c.first) *
-                         up;
-        view.rate_spread = half * (c.first * c.first + farthest * c.second) * up;
+                         upward;
+        view.rate_spread = half * (c.first * c.first + farthest * c.second) * upward;
         return view;
     }
 
@@ -168,7 +168,7 @@ void GapWatch::begin(const CurvePiece& piece, double from, double to) {
     moved_ = 0;
     for (const std::vector<double>& a : piece.coefficients()) { // 3.5: above 2 sqrt 3
         // arcs.md A5 (above twice the root of three components)
-        moved_ += 3.5 * (1 + 0.5 * order * order) * power * largest(a) * up;
+        moved_ += 3.5 * (1 + 0.5 * order * order) * power * largest(a) * upward;
         power *= h;
         order += 1;
     }
@@ -183,7 +183,7 @@ bool GapWatch::is_far(const CurvePiece& piece, const Contact& contact) const {
     }
     // arcs.md A8 (the 24 of relative positions, and the highest coefficient)
     const double rounding = (2 * static_cast<double>(piece.coefficients().size()) + 26) * u;
-    const double open = separation_weight(contact) * (piece.radius() + piece.curve().rest_radius) * up +
+    const double open = separation_weight(contact) * (piece.radius() + piece.curve().rest_radius) * upward +
                         rounding * (2 * line->length + moved_);
     return gap_of(at, contact, *line) - moved_ > 2 * margin_ * open; // the margin is above 1
 }

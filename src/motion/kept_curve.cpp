@@ -44,7 +44,7 @@ KeptCurve::KeptCurve(const Packing& start_packing, std::vector<Contact> list, st
     spread = 2 * std::max(degree, 1.0);
     most_at_rest = *std::max_element(at_rest.begin(), at_rest.end());
     if (std::isfinite(smallest)) {
-        lipschitz = 2 * std::sqrt(std::max(degree, 1.0)) / smallest * up;
+        lipschitz = 2 * std::sqrt(std::max(degree, 1.0)) / smallest * upward;
     }
     bound_rest(most_at_rest, 1);
 }
@@ -62,7 +62,7 @@ void KeptCurve::find_blocks() {
             }
         }
         if (bends(l) && cell_moves && !c.image.is_here()) {
-            blocks[l].add(start->radius.size(), cell_weight(c) * up);
+            blocks[l].add(start->radius.size(), cell_weight(c) * upward);
         }
     }
 }
@@ -92,16 +92,16 @@ void KeptCurve::bound_in_cell() {
         }
         at_rest[disks] += c.image.is_here() ? 0 : 1 + a * a;
     }
-    spread = std::max(2.0, *std::max_element(squares.begin(), squares.end())) * up;
-    lipschitz = std::sqrt(*std::max_element(fourths.begin(), fourths.end())) * up;
+    spread = std::max(2.0, *std::max_element(squares.begin(), squares.end())) * upward;
+    lipschitz = std::sqrt(*std::max_element(fourths.begin(), fourths.end())) * upward;
     bound_rest(*std::max_element(at_rest.begin(), at_rest.end()), root2);
 }
 
 /// `heaviest`: sum of the squares of what a block at rest does; `row`: 2-norm of the signs in a row of moving disks.
 void KeptCurve::bound_rest(double heaviest, double row) {
     const double weight = std::sqrt(heaviest) * rest_radius;
-    rest_residual = 1.01 * weight * up; // arcs.md A7 (and cells.md C11)
-    rest_derivative = std::isfinite(smallest) ? row * weight / smallest * up : 0;
+    rest_residual = 1.01 * weight * upward; // arcs.md A7 (and cells.md C11)
+    rest_derivative = std::isfinite(smallest) ? row * weight / smallest * upward : 0;
 }
 
 double KeptCurve::norm_of(const std::vector<double>& e) const {
@@ -137,7 +137,7 @@ double KeptCurve::norm_of(const std::vector<double>& e) const {
             x[i] = z[i] + 1e-3 * most + 1e-300;
         }
     }
-    return std::sqrt(best) * up;
+    return std::sqrt(best) * upward;
 }
 
 } // namespace isostat

@@ -34,7 +34,7 @@ double MovingPart::shift_of_end(const ArcVertex& start, const ArcVertex& end) {
             square += d * d * static_cast<double>(start.packing.radius.size());
         }
     }
-    return square > 0 ? std::sqrt(square) * up : 0;
+    return square > 0 ? std::sqrt(square) * upward : 0;
 }
 
 /// A coarser grid has moved the pinned disk by a rounding, and all others with it by a translation: undoes this.
@@ -172,7 +172,7 @@ void MovingPart::check_rest(double uncertainty) {
     }
     const KeptCurve all(start_.packing, start_.structure.contacts(), slot_, 0.0);
     const double inverse = 1.003 / start_.inverse.sigma_min; // precision.md B13
-    if (!((std::sqrt(square) + uncertainty) * inverse * all.lipschitz * up < 1)) {
+    if (!((std::sqrt(square) + uncertainty) * inverse * all.lipschitz * upward < 1)) {
         trouble_ = "grains that do not move are not proved to be at the same place at both ends";
     }
 }
@@ -252,7 +252,7 @@ bool MovingPart::complete(const CurvePiece& piece, double h, const CandidateList
             used += power * drift_along(list, piece.centre(), coefficient);
             power *= h;
         }
-        return used * up < 0.5 * list.reach; // cells.md C8 (half the reach)
+        return used * upward < 0.5 * list.reach; // cells.md C8 (half the reach)
     }
     const std::size_t axes = piece.centre().axes();
     const double unit = 1 / list.reach; // squares then neither under- nor overflow in any unit
@@ -270,7 +270,7 @@ bool MovingPart::complete(const CurvePiece& piece, double h, const CandidateList
             moved += power * length([&](std::size_t c) { return coefficient[c]; });
             power *= h;
         }
-        if (!(2 * (moved + unit * off) * up < 1)) {
+        if (!(2 * (moved + unit * off) * upward < 1)) {
             return false;
         }
     }

@@ -55,7 +55,7 @@ struct PowerWatch::Power {
             first += power * g[k - 1];
         }
         const double open = first * slope_apart + second * apart + heaviest * apart * slope_apart + residual;
-        return value - (half * change + rounding + open) * up;
+        return value - (half * change + rounding + open) * upward;
     }
 };
 
@@ -170,12 +170,12 @@ PowerWatch::Power PowerWatch::power_along(const CurvePiece& piece) const {
         }
     }
     for (double& x : power.g) {
-        x = std::sqrt(x) * up;
+        x = std::sqrt(x) * upward;
     }
     const double spread = std::sqrt(curve.spread);
-    power.apart = (spread * piece.radius() + curve.rest_residual) * up;
-    power.slope_apart = spread * piece.slope_error() * up;
-    power.residual = forces.residual * (speed + piece.slope_error()) * up;
+    power.apart = (spread * piece.radius() + curve.rest_residual) * upward;
+    power.slope_apart = spread * piece.slope_error() * upward;
+    power.residual = forces.residual * (speed + piece.slope_error()) * upward;
     return power;
 }
 

@@ -12,7 +12,7 @@ namespace isostat {
 
 using roundoff::u;
 /// Factor for sums over all coordinates, their roots, a few products: relative rounding below 1e-9 (B1).
-inline constexpr double up = 1 + 1e-9; // arcs.md A8
+inline constexpr double upward = 1 + 1e-9; // arcs.md A8
 using roundoff::root2;
 /// Relative error of a product with the exact row of a contact, in units of u: entries, products and their sum.
 constexpr double row_units(int dimension) {

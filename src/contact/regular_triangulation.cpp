@@ -51,9 +51,9 @@ std::vector<Disk> weighted_points(const Packing& packing) {
 RegularTriangulation::Shared RegularTriangulation::build(const Packing& packing) {
     using Vertex =
         CGAL::Triangulation_vertex_base_with_info_2<int, Kernel, CGAL::Regular_triangulation_vertex_base_2<Kernel>>;
-    using Cell =
+    using FaceBase =
         CGAL::Triangulation_face_base_with_info_2<int, Kernel, CGAL::Regular_triangulation_face_base_2<Kernel>>;
-    using Triangulation = CGAL::Regular_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex, Cell>>;
+    using Triangulation = CGAL::Regular_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex, FaceBase>>;
 
     std::vector<std::pair<Disk, int>> points;
     for (const Disk& disk : weighted_points(packing)) {

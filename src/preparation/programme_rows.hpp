@@ -64,9 +64,9 @@ struct ContactProgramme::Rows {
     /// Whether the linear gap can reach 0 within the trust bounds; no real gap is smaller than the linear one.
     bool can_close(const Packing& packing, const Contact& c, double trust) {
         double closing = 0;
-        gradient(packing, c).for_each([&](std::size_t k, double value) {
+        gradient(packing, c).for_each([&](std::size_t k, double slope) {
             const bool of_grain = k < packing.length_at(0);
-            closing += std::abs(value) * (of_grain ? trust : wall_trust(packing) * trust);
+            closing += std::abs(slope) * (of_grain ? trust : wall_trust(packing) * trust);
         });
         return isostat::gap(packing, c) < closing * (1 + 1e-9);
     }

@@ -502,8 +502,7 @@ bool Prover::prove_gaps() {
                 claim.where = pair;
             }
         }
-        // Another pair may be nearer than the one named, by more than the claim leaves open.
-        // checker.md K9, half of what the claim leaves open
+        // checker.md K9, half of what the claim leaves open: another pair may be nearer than the one named by more
         const double room = 0x1p-47 * largest_length(state_.packing);
         const bool unclear = std::ranges::any_of(
             gaps, [&](const Interval& h) { return h != nearest && h.lower < nearest.upper - room; });

@@ -244,6 +244,14 @@ Evidence evidence_around(const Evidence& e, double swing, double reach) {
     return Evidence(e.state, CheckerArithmetic::rows, true, {}, usual_digits, Rational(product_above(swing, reach)));
 }
 
+/// How far the held coordinates may move. The narrower, the sharper all enclosures; below twice the step the minimum
+/// might be outside.
+double reach_of(const Evidence& e, double step) {
+    // 0x1p-40: choice: held coordinates move by that share of the smallest radius at least; 2.01: checker.md K28, above
+    // the 2 of clumps.md U8
+    return std::max(0x1p-40 * e.state.packing.min_radius(), 2.01 * step);
+}
+
 } // namespace
 
 ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
@@ -274,10 +282,7 @@ ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
     }
     const Eigen::MatrixXd inverse = middle_of(stored).inverse();
     const double step = newton_step_above(e, acting, inverse);
-    // The narrower, the sharper all enclosures; below twice the step the minimum might be outside.
-    // 0x1p-40: choice: held coordinates move by that share of the smallest radius at least; 2.01: checker.md K28, above
-    // the 2 of clumps.md U8
-    const double reach = std::max(0x1p-40 * e.state.packing.min_radius(), 2.01 * step);
+    const double reach = reach_of(e, step);
     if (!(reach < 0.125 * e.state.packing.min_radius())) { // cost: wider ones are given up as undecided
         return answer(check, Verdict::undecided, fmt::format("Newton's step is up to {:.3g}, too long", step));
     }

@@ -85,9 +85,7 @@ EventRecord event_of(const std::string& line, const std::string& where, const Lo
     const Field field(parsed, where);
     const std::string strain_bound = names.strain + "_bound";
     const auto [stress, strain, bound] = std::array{names.stress.c_str(), names.strain.c_str(), strain_bound.c_str()};
-    field.only({"step",       "equilibrium",  "arc",   "kind",   "opened",      "closed",    "power_turn",  "held_at",
-                stress,       strain,         bound,   "force",  "force_bound", "power",     "power_bound", "work",
-                "work_bound", "displacement", "steps", "margin", "decided_by",  "perturbed", "certificate"});
+    field.only(event_names(names).all);
     const auto number = [&field](const char* name) {
         const Field value = field.at(name);
         return value.value().is_null() ? std::numeric_limits<double>::quiet_NaN() : value.number();

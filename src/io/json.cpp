@@ -83,7 +83,7 @@ void Field::fail(const std::string& expected) const {
            shortened(*value_), expected);
 }
 
-void Field::only(std::initializer_list<const char*> keys) const {
+void Field::only(const std::vector<std::string>& keys) const {
     if (!value_->is_object()) {
         fail("an object");
     }

@@ -12,7 +12,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
-#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -41,7 +40,7 @@ class Field {
     /// "FILE: PATH".
     [[nodiscard]] std::string where() const { return source_ + ": " + path_; }
     /// Every key must be in the list.
-    void only(std::initializer_list<const char*> keys) const;
+    void only(const std::vector<std::string>& keys) const;
     [[nodiscard]] bool has(const char* key) const { return value_->is_object() && value_->contains(key); }
     /// Member of an object. Throws when this is no object or the key is missing.
     [[nodiscard]] Field at(const char* key) const;

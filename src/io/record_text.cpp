@@ -6,8 +6,8 @@
 #include <isostat/io/run_directory.hpp>
 
 #include <limits>
+#include <optional>
 #include <type_traits>
-#include <utility>
 
 namespace isostat {
 
@@ -80,6 +80,35 @@ Json certificate_json(const ArcCertificate& certificate) {
     return object;
 }
 
+/// The one list of the fields of an arc, in their order. `use` takes the name and the value: an integer, a number, a
+/// word, or what only some arcs have.
+template <class Use> void for_each_event_field(const ArcRecord& arc, const RecordColumns& names, const Use& use) {
+    use("step", arc.step);
+    use("equilibrium", arc.equilibrium);
+    use("arc", arc.arc);
+    use("kind", to_string(arc.kind));
+    use("opened", to_string(arc.opened, names.dimension));
+    use("closed", to_string(arc.closed, names.dimension));
+    use("power_turn", arc.power_turn);
+    use("held_at", arc.power_turn ? std::optional(arc.held_at) : std::nullopt);
+    use(names.stress, arc.stress);
+    use(names.strain, arc.strain);
+    use(names.strain + "_bound", arc.strain_bound);
+    use("force", arc.force);
+    use("force_bound", arc.force_bound);
+    use("power", arc.power);
+    use("power_bound", arc.power_bound);
+    use("work", arc.work);
+    use("work_bound", arc.work_bound);
+    use("displacement", arc.displacement);
+    use("steps", arc.steps);
+    use("margin", arc.margin);
+    use("decided_by", to_string(arc.decided_by));
+    const auto tie = [&](const TieDecision& decision) { return tie_json(decision, names.dimension); };
+    use("perturbed", arc.perturbed.empty() ? std::nullopt : std::optional<Json>(json::array_of(arc.perturbed, tie)));
+    use("certificate", arc.certificate ? std::optional<Json>(certificate_json(*arc.certificate)) : std::nullopt);
+}
+
 /// Counters by the places of their names in a record: one list for writing and reading. `use` takes the place, then the
 /// number.
 template <class Counted, class Use> void for_each_counter(Counted& counters, const Use& use) {
@@ -147,40 +176,32 @@ template <class Value> void read_from(const json::Field& document, const std::st
 
 } // namespace
 
+EventNames event_names(const RecordColumns& names) {
+    EventNames result;
+    for_each_event_field(ArcRecord{}, names, [&result](const std::string& name, const auto& value) {
+        result.all.push_back(name);
+        if constexpr (std::is_convertible_v<decltype(value), std::optional<double>>) {
+            result.numbers.push_back(name);
+        }
+    });
+    return result;
+}
+
 std::string event_line(const ArcRecord& arc, const RecordColumns& names) {
     Json line;
-    line["step"] = arc.step;
-    line["equilibrium"] = arc.equilibrium;
-    line["arc"] = arc.arc;
-    line["kind"] = to_string(arc.kind);
-    line["opened"] = to_string(arc.opened, names.dimension);
-    line["closed"] = to_string(arc.closed, names.dimension);
-    line["power_turn"] = arc.power_turn;
-    if (arc.power_turn) {
-        line["held_at"] = arc.held_at;
-    }
-    for (const auto& [name, value] : {std::pair{names.stress, arc.stress},
-                                      {names.strain, arc.strain},
-                                      {names.strain + "_bound", arc.strain_bound},
-                                      {"force", arc.force},
-                                      {"force_bound", arc.force_bound},
-                                      {"power", arc.power},
-                                      {"power_bound", arc.power_bound},
-                                      {"work", arc.work},
-                                      {"work_bound", arc.work_bound},
-                                      {"displacement", arc.displacement}}) {
-        line[name] = json::or_null(value);
-    }
-    line["steps"] = arc.steps;
-    line["margin"] = json::or_null(arc.margin);
-    line["decided_by"] = to_string(arc.decided_by);
-    if (!arc.perturbed.empty()) {
-        line["perturbed"] =
-            json::array_of(arc.perturbed, [&](const TieDecision& tie) { return tie_json(tie, names.dimension); });
-    }
-    if (arc.certificate) {
-        line["certificate"] = certificate_json(*arc.certificate);
-    }
+    for_each_event_field(arc, names, [&line](const std::string& name, const auto& value) {
+        using Value = std::decay_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, double>) {
+            line[name] = json::or_null(value);
+        } else if constexpr (std::is_same_v<Value, std::optional<double>> ||
+                             std::is_same_v<Value, std::optional<Json>>) {
+            if (value) {
+                line[name] = *value;
+            }
+        } else {
+            line[name] = value;
+        }
+    });
     return json::dumped(line) + "\n";
 }
 

@@ -32,6 +32,13 @@ struct RecordColumns {
 /// Of a run with such a load; `tilts`: `Cell::shears`.
 RecordColumns record_columns(const Load& load, bool tilts);
 
+/// Fields that an object of events.jsonl may have.
+struct EventNames {
+    std::vector<std::string> all;
+    std::vector<std::string> numbers; ///< null: not known
+};
+EventNames event_names(const RecordColumns& names);
+
 /// One JSON object and a newline.
 std::string event_line(const ArcRecord& arc, const RecordColumns& names);
 

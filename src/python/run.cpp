@@ -260,6 +260,13 @@ void bind_run(py::module_& module) {
             return row;
         },
         py::arg("name"), py::arg("dimension"), "i, j and the image of a contact in records; empty: it is none.");
+    module.def(
+        "_event_numbers",
+        [](const std::string& header) {
+            const MoreColumns more = header.empty() ? MoreColumns{} : named_columns(header + "\n", "equilibria.csv");
+            return event_names(record_columns(more)).numbers;
+        },
+        py::arg("header"), "Names of the numbers of events.jsonl beside an equilibria.csv with such a first line.");
     bind_arc(module);
     bind_equilibrium(module);
     py::class_<Run>(module, "_Run")

@@ -13,10 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ._core import State, _contact_spelt, _integer_columns, _walked_to, forces_at
+from ._core import State, _contact_spelt, _event_numbers, _integer_columns, _walked_to, forces_at
 from ._words import BadInput, NotStored, Verdict
-
-_numbers = """force force_bound power power_bound work work_bound displacement margin held_at""".split()
 
 
 def _complete_lines(path: Path) -> list[str]:
@@ -184,9 +182,7 @@ class Records:
         of stresses ``t``, ``eps3``.
         """
         dimension = self._first.positions.shape[1] if self.event_records else 2
-        axis = "3" if self._stress == "t" else self._stress.removeprefix("sigma").removeprefix("shear")
-        strain = "eps" + axis
-        numbers = [self._stress, strain, strain + "_bound", *_numbers]
+        numbers = _event_numbers("".join(_complete_lines(self.path / "equilibria.csv")[:1]))
         kinds = np.dtype(
             [("step", int), ("equilibrium", int), ("arc", int), ("kind", "U8")]
             + [("opened", int, 2), ("closed", int, 2), ("opened_image", int, dimension), ("closed_image", int, dimension)]

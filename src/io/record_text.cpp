@@ -179,8 +179,9 @@ template <class Value> void read_from(const json::Field& document, const std::st
 EventNames event_names(const RecordColumns& names) {
     EventNames result;
     for_each_event_field(ArcRecord{}, names, [&result](const std::string& name, const auto& value) {
+        using Value = std::decay_t<decltype(value)>;
         result.all.push_back(name);
-        if constexpr (std::is_convertible_v<decltype(value), std::optional<double>>) {
+        if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>) {
             result.numbers.push_back(name);
         }
     });

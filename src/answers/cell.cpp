@@ -1,5 +1,6 @@
 #include "answers/state.hpp"
 #include "core/decimal.hpp"
+#include "io/state_json.hpp"
 #include "packing/words.hpp"
 
 #include <fmt/format.h>
@@ -10,24 +11,6 @@
 namespace isostat::answers {
 
 namespace {
-
-std::vector<std::string> moving(const Cell& cell) {
-    std::vector<std::string> names;
-    if (cell.keeps_shape) {
-        return {"scale"};
-    }
-    for (std::size_t a = 0; a < most_axes; ++a) {
-        if (cell.period_moves[a]) {
-            names.emplace_back(axis_names[a]);
-        }
-    }
-    for (std::size_t t = 0; t < most_tilts; ++t) {
-        if (cell.tilt_moves[t]) {
-            names.emplace_back(tilt_names[t]);
-        }
-    }
-    return names;
-}
 
 /// The tilts in the order xy, xz, yz.
 std::span<const double> tilts_of(const Packing& packing) {
@@ -64,7 +47,7 @@ std::string cell_words(const Packing& packing) {
         text += fmt::format("{}{} ({})", a == 0 ? "" : " x ", packing.length(static_cast<int>(a)),
                             packing.cell.periodic[a] ? "periodic" : "walls");
     }
-    const std::vector<std::string> names = moving(packing.cell);
+    const auto names = json::cell_json(packing)["moves"].get<std::vector<std::string>>();
     return fmt::format("{}, tilt {}; {}, {} {} is pinned", text, fmt::join(tilts_of(packing), ", "),
                        names.empty()              ? "no period moves"
                        : packing.cell.keeps_shape ? "it keeps its shape"
@@ -82,11 +65,11 @@ Json add_counts(Answer& out, const std::string& title, const StrainCounts& count
     return json::counts(counts);
 }
 
-void add_cell(Answer& out, const Packing& packing, const CellInspection& cell) {
+namespace {
+
+/// Counts with the strains of a cell, and whether it is jammed.
+void add_strains(Answer& in, const CellInspection& cell) {
     const char* const grain = grain_word(cell.dimension);
-    Answer in;
-    in.item("moves", moving(packing.cell));
-    in.item("tilt", packing.dimension == plane ? or_null(packing.lattice(0, 1)) : Json(tilts_of(packing)));
     in.item("all", add_counts(in, fmt::format("all {}s", grain), cell.all));
     in.item("backbone_disks", cell.backbone_disks);
     in.item("backbone", nullptr);
@@ -103,6 +86,18 @@ void add_cell(Answer& out, const Packing& packing, const CellInspection& cell) {
     add_answer(in, "local", cell.local);
     add_answer(in, "collective", cell.collective);
     add_answer(in, "strict", cell.strict);
+}
+
+} // namespace
+
+void add_cell(Answer& out, const Packing& packing, const CellInspection* cell) {
+    Answer in{.json = json::cell_json(packing)};
+    if (packing.dimension == plane) {
+        in.item("tilt", in.json["tilt"][0]);
+    }
+    if (cell != nullptr) {
+        add_strains(in, *cell);
+    }
     out.part("cell", std::move(in));
 }
 

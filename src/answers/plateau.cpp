@@ -254,7 +254,7 @@ Answer to_answer(const PlateauAnswer& answer, bool lists) {
     out.item("no_self_stress_below", or_null(plateau.no_self_stress_below), "no self-stress (h = 0)", "{}",
              self_stress_text(plateau));
     if (packing.cell.all()) {
-        out.line("cell", "{}, as --cell says: its strains are among the N_f above", strain);
+        out.item("strain", strain, "cell", "{}, as --cell says: its strains are among the N_f above", strain);
     }
     if (packing.cell.all() && !clumps) {
         add_strains(out, answer);

@@ -57,6 +57,9 @@ void add_counting(Answer& out, const State& state, const Counting& c) {
     const auto shears = std::span(state.load.shear).first(packing.tilts());
     const bool sheared = std::ranges::any_of(shears, [](double shear) { return shear != 0; });
     out.item("stress", numbers(stresses_of(state)));
+    if (sheared) {
+        out.item("shear", numbers(shears));
+    }
     out.item("load", word_of(state.load.kind, load_kind_words), "load", "sigma = ({}){}, {}",
              fmt::format("{}", fmt::join(stresses_of(state), ", ")),
              sheared ? fmt::format(", shear {}", fmt::join(shears, ", ")) : "",
@@ -337,8 +340,8 @@ Answer to_answer(const StateAnswer& answer, const std::string& file, bool each_f
         out.line("smallest singular values", "{} (of the stored coordinates, computed)",
                  fmt::format("{:.4g}", fmt::join(answer.singular_values, ", ")));
     }
-    if (answer.cell) {
-        add_cell(out, state.packing, *answer.cell);
+    if (state.packing.cell.any()) {
+        add_cell(out, state.packing, answer.cell ? &*answer.cell : nullptr);
     }
     if (answer.box) {
         add_box(out, state.packing, *answer.box);

@@ -43,8 +43,9 @@ Json add_counts(Answer& out, const std::string& title, const StrainCounts& count
 /// `box`, with the walls held.
 void add_box(Answer& out, const Packing& packing, const BoxInspection& box);
 
-/// `cell`: the counts side by side, the words of jamming, and the count of contacts that elastic moduli need.
-void add_cell(Answer& out, const Packing& packing, const CellInspection& cell);
+/// `cell`: axes, tilts and what moves; where strains were counted, the counts side by side, the words of jamming, and
+/// the count of contacts that elastic moduli need. \pre some axis is periodic
+void add_cell(Answer& out, const Packing& packing, const CellInspection* cell);
 
 /// For a state that a run left with touching pairs besides its contacts: `face`, their names, and the ranges of forces
 /// that are not unique, or why these are `undecided`. For contacts that the run left at force 0: `left_at_zero`, their

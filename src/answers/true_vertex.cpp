@@ -188,8 +188,8 @@ void add_forces_in_file(Answer& out, const StateFile& file, const Certification&
 void add_untold(Answer& out, const compare::Untold& untold, Verdict of_the_doubles) {
     if (untold.any()) {
         out.item("untold", {{"rounding", or_null(untold.rounding)},
-                            {"gaps", contact_names(untold.gaps)},
-                            {"forces", contact_names(untold.forces)},
+                            {"gaps", contact_names(untold.gaps, untold.dimension)},
+                            {"forces", contact_names(untold.forces, untold.dimension)},
                             {"verdict_of_the_doubles", to_string(of_the_doubles)}});
     }
 }

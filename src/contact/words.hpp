@@ -66,7 +66,7 @@ template <class... Values> Failure failed(FailureKind kind, FormatOfWords<Values
 }
 
 /// "12-40", "3-left", ...
-inline std::vector<std::string> contact_names(const std::vector<Contact>& contacts, int dimension = 2) {
+inline std::vector<std::string> contact_names(const std::vector<Contact>& contacts, int dimension) {
     std::vector<std::string> names;
     for (const Contact& contact : contacts) {
         names.push_back(to_string(contact, dimension));

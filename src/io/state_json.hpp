@@ -15,6 +15,10 @@ namespace isostat::json {
 /// The state that `parse_state` reads, from an object of a document.
 StateFile state_from_json(const Field& document, const std::string& source);
 
+/// The member "cell" of a state, \pre some axis is periodic: {"moves", "axes", "tilt", "pin"}. Throws where a tilt is
+/// not finite.
+Json cell_json(const Packing& packing);
+
 Json contact_to_json(const Contact& contact, int dimension);
 /// Throws when an index is out of range, a disk touches itself, a wall is unknown or absent, or `contact_to_json`
 /// spells it otherwise (disks in increasing order, no image [0, 0]).

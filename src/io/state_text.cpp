@@ -39,26 +39,7 @@ void append_numbers(std::string& text, std::span<const double> values, const cha
 
 /// The member "cell", or nothing in a box.
 std::string cell_text(const Packing& packing) {
-    const Cell& cell = packing.cell;
-    if (!cell.any()) {
-        return {};
-    }
-    Json object;
-    object["moves"] = Json::array();
-    for (std::size_t a = 0; a < packing.axes(); ++a) {
-        object["axes"].push_back(cell.periodic[a] ? "periodic" : "walls");
-        if (cell.period_moves[a]) { // of a cell that keeps its shape: the last one
-            object["moves"].push_back(cell.keeps_shape ? "scale" : axis_names[a]);
-        }
-    }
-    for (std::size_t t = 0; t < packing.tilts(); ++t) {
-        object["tilt"].push_back(finite(packing.q[packing.length_at(packing.axes() + t)], "cell.tilt"));
-        if (cell.tilt_moves[t]) {
-            object["moves"].push_back(tilt_names[t]);
-        }
-    }
-    object["pin"] = cell.pin;
-    return fmt::format("  \"cell\": {},\n", object.dump());
+    return packing.cell.any() ? fmt::format("  \"cell\": {},\n", json::cell_json(packing).dump()) : "";
 }
 
 /// The members "length" and "disks".
@@ -137,6 +118,26 @@ void append_contact(std::string& text, const Contact& contact, int dimension) {
 }
 
 } // namespace
+
+json::Json json::cell_json(const Packing& packing) {
+    const Cell& cell = packing.cell;
+    Json object;
+    object["moves"] = Json::array();
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        object["axes"].push_back(cell.periodic[a] ? "periodic" : "walls");
+        if (cell.period_moves[a]) { // of a cell that keeps its shape: the last one
+            object["moves"].push_back(cell.keeps_shape ? "scale" : axis_names[a]);
+        }
+    }
+    for (std::size_t t = 0; t < packing.tilts(); ++t) {
+        object["tilt"].push_back(finite(packing.q[packing.length_at(packing.axes() + t)], "cell.tilt"));
+        if (cell.tilt_moves[t]) {
+            object["moves"].push_back(tilt_names[t]);
+        }
+    }
+    object["pin"] = cell.pin;
+    return object;
+}
 
 std::string state_text(const State& state, std::span<const double> forces) {
     const Packing& packing = state.packing;

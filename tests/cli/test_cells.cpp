@@ -66,6 +66,7 @@ BOOST_FIXTURE_TEST_CASE(plateau_of_a_periodic_dump, scratch::InFolder) {
     says(run({"plateau", file, "--cell", "diagonal"}), 0, {"periodic along x and y", "from N = 30 with 1 rattlers"});
     const auto json = json_of(run({"plateau", file, "--cell", "diagonal", "--json"}));
     BOOST_TEST(json.at("cell").at("backbone").at("isotropic").at("h") == 1);
+    has(json, {{"strain", "diagonal"}});
     expect(run({"plateau", file, "--cell", "diagonal", "--not-periodic"}), 1);
     const auto open = run({"plateau", file, "--periodic", "--not-periodic"});
     BOOST_TEST(open.status == 64);

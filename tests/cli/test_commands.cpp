@@ -216,6 +216,26 @@ BOOST_AUTO_TEST_CASE(the_mechanisms_of_the_true_configuration_are_those_of_the_t
     BOOST_TEST(contains(run({"inspect", file}).out, fmt::format("h = 0, k = {} there", k)));
 }
 
+BOOST_AUTO_TEST_CASE(shear_and_cell_of_a_state_are_in_its_object) {
+    has(json_of(run({"inspect", std::string(ISOSTAT_EXAMPLES) + "/cells/flowing.json", "--json"})),
+        {{"shear/0", 0.5}, {"cell/moves", {"x", "y", "xy"}}, {"cell/tilt", 1}});
+    has(json_of(run({"inspect", scratch::data("coq/slab.json"), "--json"})), // no strains are counted with walls
+        {{"cell/axes", {"periodic", "periodic", "walls"}}, {"cell/tilt/0", 0.875}, {"cell/pin", 0}});
+}
+
+BOOST_FIXTURE_TEST_CASE(what_a_rounding_leaves_open_of_spheres_in_a_cell_has_one_name, scratch::InFolder) {
+    std::string text = scratch::read(std::string(ISOSTAT_EXAMPLES) + "/spheres/cell-30.json");
+    text.insert(text.find('{') + 1, R"("provenance": {"command": "isostat import", "rounding": 1e-3},)");
+    const std::string file = folder.file("rounded.json", text);
+    const std::string said = run({"inspect", file}).out;
+    const json untold = json_of(run({"inspect", file, "--json"}), 2)["untold"];
+    for (const char* kind : {"gaps", "forces"}) {
+        const auto names = untold[kind].get<std::vector<std::string>>();
+        BOOST_TEST(names.size() > 3U);
+        BOOST_TEST(contains(said, fmt::format("{} {} ({})", names.size(), kind, fmt::join(names, " "))), said);
+    }
+}
+
 BOOST_FIXTURE_TEST_CASE(a_sample_that_fails_is_a_result_and_a_tie_is_undecided, scratch::InFolder) {
     ran(folder, scene_from(scratch::data("vertex100.txt"), up(6), "[run]\nmax_arcs = 3\n"), 1, {"failed", "max_arcs"});
     BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "\"status\": \"failed: "));

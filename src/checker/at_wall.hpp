@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A disk and a wall as the checker sees them: the only code of the checker that says which walls there are and where
-/// a wall stands.
+/// A disk and a wall as the checker sees them: the only code of the checker that says where a wall stands and which
+/// contacts with walls there can be.
 
 #include "checker/index.hpp"
 

@@ -65,7 +65,7 @@ class Factorisation {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// Not movable because the factors refer to the structure.
+/// Neither copied nor moved: whoever makes one keeps it.
 struct FactorisedStructure {
     explicit FactorisedStructure(IsostaticStructure s) : structure(std::move(s)), factorisation(structure) {}
     FactorisedStructure(IsostaticStructure s, ApproximateInverse factors)

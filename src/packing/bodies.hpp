@@ -55,7 +55,7 @@ double shared_by_members(const Packing& packing, std::span<const int> left_out);
 
 /// Throws `Error(bad_input)` naming the bar or the body: bars are of two different disks in increasing order, each
 /// once, their lengths from `shortest_length` to `longest_length`, and as many as `bars_of_rigid_body` in each body.
-/// That they are independent is told by the rank of the contacts (proofs/clumps.md, B2).
+/// That they are independent is told by the rank of the contacts (proofs/clumps.md, U1).
 void validate_bars(const Packing& packing, const std::string& source);
 
 } // namespace isostat

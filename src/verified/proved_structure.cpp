@@ -42,7 +42,7 @@ Result<std::unique_ptr<ProvedStructure>> ProvedStructure::moved(Packing there, d
     const double gaps = worst_gap_ratio(packing, structure.contacts());
     const double turning = lipschitz(packing, structure.contacts());
     InverseBound bound = inverse;
-    // bounds.md V4 (b), three roundings, and two of the largest gap
+    // bounds.md V4 (b), three roundings
     bound.sigma_min -= normal_rate(turning) * distance * (1 + 4 * u);
     bound.sigma_min *= 1 - 2 * u;
     // true_vertex.md V5 (a centre that was moved)

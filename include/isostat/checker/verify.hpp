@@ -2,7 +2,7 @@
 /// \file
 /// An independent checker of certificates and of runs, from their files alone. It shares with the program that made
 /// them only the data (states, contacts, claims) and the readers of the files: no matrix, bound, solver or list of
-/// neighbours. Mathematics, what is proved and what is only compared: proofs/checker.md (K1 to K26; "Runs").
+/// neighbours. Mathematics, what is proved and what is only compared: proofs/checker.md (K1 to K30; "Runs").
 
 #include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>

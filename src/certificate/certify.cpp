@@ -36,7 +36,7 @@ double largest_gap(const ProvedStructure& at) {
     double largest = 0;
     for (const Contact& contact : at.structure.contacts()) {
         const double h = std::abs(gap(at.packing, contact));
-        // 8: bounds.md V4 (a), rounding of a gap; 4: bounds.md V4 (b), two roundings of the largest gap
+        // 8: bounds.md V4 (8u of a gap); 4: precision.md B1 (last operations)
         largest = std::max(largest, (h + 8 * u * (h + target(at.packing, contact))) * (1 + 4 * u));
     }
     return largest;
@@ -313,7 +313,7 @@ bool Prover::put_on_grid() {
     }
     stored_ = std::move(made.value());
     const int d = stored_->packing.dimension;
-    // cells.md C2, offsets that the grid allows for
+    // cells.md C4 (stored and grid)
     const double weight = 2 + 3 * (d + 1); // |delta gap| for offsets up to 3, component by component
     rounded_away_ = d * weight * moved;
     return true;
@@ -479,7 +479,7 @@ bool Prover::prove_gaps() {
         }
         // Pairs that are not listed: their gap changes by at most so much times the distance to the true vertex.
         const double weight = far_weight(centre_->packing, pairs.reach);
-        // true_vertex.md V5 (other gaps), rounding of the difference
+        // precision.md B1 (last operations)
         GapsClaim claim{(pairs.reach - weight * vertex_->distance()) * (1 - 0x1p-50), Contact(), vertex_->rung()};
         claim.smallest = arcs.below(claim.smallest);
         Interval nearest{infinity, infinity};

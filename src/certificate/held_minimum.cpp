@@ -71,7 +71,7 @@ std::vector<Enclosure> eigenvalues(const Eigen::MatrixXd& form, const Eigen::Mat
     const Eigen::MatrixXd& q = solver.eigenvectors();
     const Eigen::VectorXd& values = solver.eigenvalues();
     const auto norm = [](const Eigen::MatrixXd& m) { return m.cwiseAbs().rowwise().sum().maxCoeff(); };
-    // bounds.md V0, two products with k additions each, doubled
+    // clumps.md U8, two products after each other
     const double roundings = 4 * static_cast<double>(columns.rows() + 2) * u;
     const Eigen::MatrixXd size = q.cwiseAbs();
     const Eigen::MatrixXd rest = q.transpose() * form * q - Eigen::MatrixXd(values.asDiagonal());
@@ -149,7 +149,7 @@ class HeldForm {
             }
             sum.size += std::abs(share) * m.size * up;
             sum.residual +=
-                // bounds.md V0, products and sums
+                // clumps.md U4, a sum of motions
                 std::abs(share) * (m.residual + 16 * static_cast<double>(motions_.size()) * u * m.size) * up;
         }
         const double fastest = Eigen::Map<const Eigen::ArrayXd>(sum.v.data(), std::ssize(sum.v)).abs().maxCoeff();
@@ -161,9 +161,9 @@ class HeldForm {
         }
         find_form();
         const double slower = slowest / fastest;
-        // clumps.md U4, roundings of the quotient
+        // clumps.md U4, W'' over the square of the fastest coordinate
         const double off = error_(0, 0) + std::abs(form_(0, 0)) * (1 - slower * slower + 8 * u);
-        // bounds.md V0, roundings of the squares and of the quotient
+        // clumps.md U4, W'' over the square of the fastest coordinate
         return {form_(0, 0) / (fastest * fastest), off * (1.001 / (slowest * slowest))};
     }
 
@@ -215,7 +215,7 @@ class HeldForm {
         const Eigen::Index k = form_.rows();
         const Eigen::MatrixXd inverse = form_.inverse();
         const Eigen::MatrixXd size = inverse.cwiseAbs();
-        const double roundings = static_cast<double>(k + 4) * u; // bounds.md V0, a product with k additions
+        const double roundings = static_cast<double>(k + 4) * u; // clumps.md U8, a product with k terms
         Eigen::VectorXd multiplier(k);
         Eigen::VectorXd open(k);
         for (Eigen::Index i = 0; i < k; ++i) {
@@ -308,7 +308,7 @@ class HeldForm {
             open(static_cast<Eigen::Index>(i)) = slope.radius + changes;
         }
         const Eigen::VectorXd rate = -form_.ldlt().solve(multiplier);
-        // bounds.md V0, a product with k additions and the last one
+        // clumps.md U8, a product with k terms, and the multiplier
         const double roundings = static_cast<double>(form_.rows() + 4) * u;
         const Eigen::VectorXd size = form_.cwiseAbs() * rate.cwiseAbs() + multiplier.cwiseAbs();
         const Eigen::VectorXd rest =
@@ -415,7 +415,7 @@ class HeldForm {
     bool follows_ = load_.kind == LoadKind::true_stress;
     double lipschitz_;
     ArcBodies arcs_;
-    // arcs.md A8, a product of two differences over a contact, and N additions
+    // clumps.md U8, a sum over N contacts
     double roundings_ = (static_cast<double>(contacts_.size()) + 32) * u; // relative, of sums over the contacts
     double force_size_;
     std::vector<HeldMotion> motions_;

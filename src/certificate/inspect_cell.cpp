@@ -36,7 +36,7 @@ State strained(State state, const std::vector<Contact>& own) {
 /// as these over the true ones, that along x being 1 (a factor changes no sign). Forces are affine in every stress, so
 /// they lie between those of the corners. Nothing where a corner is not known.
 std::vector<std::vector<Interval>> pressed(State state, double radius) {
-    constexpr double rounded = 0x1p-48; // cells.md C7, nine operations, each to 2^-53
+    constexpr double rounded = 0x1p-48; // cells.md C7, roundings of a stress at a corner
     const double x = state.packing.length(0);
     state.load.path.reset();
     std::vector<PerAxis<double>> corners(1U << (state.packing.axes() - 1), state.load.stress);

@@ -54,7 +54,7 @@ std::vector<std::size_t> judge_forces(MechanismInspection& inspection, Vertex& v
             acting.push_back(l);
             // Known only as well as the stored configuration: the forces change by |H^-1| times what the matrix does.
             const double uncertain =
-                // bounds.md V4, the curvature of the rows with the roundings of the root
+                // clumps.md U4, what a multiplier that is 0 at the stored place may be
                 1.01 * vertex.statics.normal_uncertainty() * force_norm(vertex, sigma) / vertex.inverse.sigma_min;
             at_rest = at_rest && std::abs(f.value) <= f.radius + uncertain;
             if (std::abs(f.value) > f.radius + uncertain && inspection.remark.empty()) {
@@ -84,7 +84,7 @@ void judge_minimum(MechanismInspection& inspection, const Vertex& vertex, const 
                    const std::vector<std::size_t>& acting, const std::vector<Contact>& candidates, double moved) {
     const EquilibriumRecord& record = inspection.record;
     const bool asked = !acting.empty() && has_potential(state) && state.load.infinitesimal.empty();
-    // clumps.md U8, twice what the grid moves
+    // clumps.md U8, what the grid moves and the pin moves back, with roundings
     const double off = 3 * moved * std::sqrt(static_cast<double>(vertex.packing.q.size())); // what is stored
     const auto minimum =
         asked ? minimum_near(vertex, state.load, acting, record.min_gap - record.min_gap_bound, off) : std::nullopt;

@@ -16,8 +16,8 @@ namespace {
 
 /// The bounds count roundings, not underflow or overflow: where those could matter, nothing is claimed.
 std::optional<std::string> out_of_range(const State& state) {
-    constexpr double largest = 1e100;   // bounds.md V0, no over- or underflow
-    constexpr double smallest = 1e-100; // bounds.md V0, no over- or underflow
+    constexpr double largest = 1e100;   // precision.md B2 (e), no over- or underflow
+    constexpr double smallest = 1e-100; // precision.md B2 (e), no over- or underflow
     const auto [least, most] = std::ranges::minmax_element(state.packing.radius);
     const auto size = [](const std::vector<double>& x) {
         return std::accumulate(x.begin(), x.end(), 0.0, [](double m, double c) { return std::max(m, std::abs(c)); });

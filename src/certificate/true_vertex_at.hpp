@@ -116,15 +116,15 @@ template <class T> void TrueVertexAt<T>::claim_radii() {
     const double largest = *std::ranges::max_element(moved);
     const double away = norm_of_bounds(moved);
     const double radius = above(vertex_.radius());
-    claimed_radius_ = (largest + radius) * (1 + 8 * u); // 8: true_vertex.md V5 (8e D)
+    claimed_radius_ = (largest + radius) * (1 + 8 * u); // precision.md B1 (last operations)
     // No other root within (1 + sqrt(1 - 2h)) / (beta K) >= 1.7 / (beta K) of q + p in the 2-norm.
     const double room = vertex_.lipschitz() == 0
                             ? infinity
-                            // true_vertex.md V5 (by bounds.md T9)
+                            // 1.7: true_vertex.md V5 (by bounds.md T9); 8: precision.md B1 (last operations)
                             : (1.7 / (vertex_.derivative() * vertex_.lipschitz()) * (1 - 8 * u) - away) /
                                   std::sqrt(static_cast<double>(subject_.size())) * (1 - 8 * u);
     // A sixteenth of it is claimed: enough to name the vertex, and within reach of a checker that uses another norm.
-    // true_vertex.md V5 (claimed share, division of gaps)
+    // true_vertex.md V5 (a sixteenth is claimed)
     claimed_unique_radius_ = std::max(claimed_radius_, room / 16);
     exists_ = vertex_.sigma() > 0 && claimed_radius_ <= room;
 }
@@ -144,10 +144,9 @@ template <class T> Interval TrueVertexAt<T>::gap(const Contact& contact) const {
         value = A::rounded(at.wall_gap(contact));
     }
     const double radius = above(vertex_.radius());
-    // true_vertex.md V5 (rounding of bounds)
+    // precision.md B1 (last operations)
     return around(number(value), separation_weight(contact) * radius * (1 + 4 * u) +
-                                     // 8: true_vertex.md V5 (8e D); 16: true_vertex.md V5 (claimed share, division of
-                                     // gaps)
+                                     // 8: true_vertex.md V5 (other gaps, 8 e); 16: true_vertex.md V5 (other gaps, 16 u)
                                      8 * unit() * (std::abs(value) + size) + 16 * u * std::abs(value));
 }
 
@@ -197,7 +196,7 @@ template <class T> double TrueVertexAt<T>::load_turn(bool by_the_loaded_stress) 
         const double weight =
             wall.other_at < 0
                 ? wall.other
-                // true_vertex.md V6 (c + 8)
+                // precision.md B1 (last operations)
                 : (std::abs(wall.length) + std::abs(wall.other) + 2 * above(vertex_.distance())) * (1 + 8 * u);
         sum = std::hypot(sum, stress * weight);
     }
@@ -207,7 +206,7 @@ template <class T> double TrueVertexAt<T>::load_turn(bool by_the_loaded_stress) 
 template <class T> auto TrueVertexAt<T>::present() -> const Solution& {
     if (!present_) {
         // True stresses act on the lengths of the true vertex.
-        // true_vertex.md V6 (c + 8)
+        // precision.md B1 (last operations)
         present_ = solve(external_force(false), load_turn(false) * above(vertex_.radius()) * (1 + 8 * u));
         for (std::size_t l = 0; l < subject_.zero.size(); ++l) {
             if (subject_.zero[l] != 0) {
@@ -241,7 +240,7 @@ template <class T> auto TrueVertexAt<T>::infinitesimal_solution() -> const Solut
 
 template <class T> Interval TrueVertexAt<T>::around(const T& value, double bound) const {
     const double middle = A::rounded(value);
-    // true_vertex.md V5 (rounding of bounds)
+    // true_vertex.md V5 (intervals)
     const double half = bound + 4 * u * std::abs(middle); // dropping the low part, and the sum
     const Interval interval{std::nextafter(middle - half, -infinity), std::nextafter(middle + half, infinity)};
     return interval.lower <= interval.upper ? interval : Interval{-infinity, infinity}; // a NaN says nothing
@@ -288,7 +287,8 @@ template <class T> std::string TrueVertexAt<T>::open_rate(int l) {
 template <class T> LoadEndAnswer TrueVertexAt<T>::without_end(int direction) {
     const double bound = unit_load().bound;
     for (int l = 0; l < subject_.size(); ++l) {
-        if (limits(l) && !steady(l) && !(rate(l, direction) > bound * (1 + 4 * u))) { // true_vertex.md V7 (4e)
+        // precision.md B1 (last operations)
+        if (limits(l) && !steady(l) && !(rate(l, direction) > bound * (1 + 4 * u))) {
             return {{}, open_rate(l)};
         }
     }
@@ -359,7 +359,8 @@ template <class T> LoadEndAnswer TrueVertexAt<T>::load_end(int direction) {
         return without_end(direction);
     }
     const int first = static_cast<int>(vanishing->index);
-    const double steepness = -rate(first, direction) * (1 - 4 * u) - slope.bound; // 4: true_vertex.md V7 (4e)
+    // 4: precision.md B1 (last operations)
+    const double steepness = -rate(first, direction) * (1 - 4 * u) - slope.bound;
     if (!(steepness > 0)) {
         return {{}, open_rate(first)};
     }

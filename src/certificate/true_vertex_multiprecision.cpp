@@ -4,7 +4,7 @@
 namespace isostat {
 
 std::unique_ptr<TrueVertex> in_multiprecision(const Subject& subject, const ProvedStructure& centre) {
-    constexpr int bits = 330; // true_vertex.md V5 (e of MPFR)
+    constexpr int bits = 330; // true_vertex.md Arithmetic (e of MPFR)
     return std::make_unique<TrueVertexAt<Real>>(subject, centre, Arithmetic<Real>(bits));
 }
 

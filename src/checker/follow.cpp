@@ -190,8 +190,7 @@ class Walk {
     }
 
   private:
-    // 1e-6: choice: of the recorded displacement: what an end that is taken at once is off by; and power that is looked
-    // at
+    // 1e-6: choice: of the recorded displacement: what an end that is taken at once is off by
     static constexpr double same = 1e-6;
     static constexpr double near = 1e-2; ///< choice: of the recorded displacement: an end there may be the right one
     static constexpr int most_halvings = 10; // cost: how often a step of the look is halved
@@ -334,7 +333,7 @@ class Walk {
 
     /// Whether the contact closes before `next`.
     [[nodiscard]] Met closing(const std::vector<double>& next, bool first) const {
-        // choice: power that is looked at
+        // 0x1p-50: choice: power that is looked at; 1e-6: choice: power that is looked at
         constexpr double rounding = 0x1p-50; // of a velocity, whose largest component is 1
         if (powered_ && power_ < -1e-6 * power_size_.terms && power_ < -rounding * power_size_.load) {
             return {false, {}, fmt::format("the power of the load vanishes before {} closes", name(motion_.closed))};

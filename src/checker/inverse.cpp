@@ -323,7 +323,7 @@ InverseBound bound_rational(const Problem& problem, const Columns<Integer>& colu
 
 /// An upper bound of the square root, by less than 2^-20.
 Rational root(unsigned long value) {
-    // 20: checker.md K15 (root rounded up to 2^-20); 40: checker.md K15 (root rounded up)
+    // 20: checker.md K15 (roots of integers); 40: checker.md K15 (roots of integers)
     return Rational(sqrt(shifted_left(Integer(value), 40)) + 1) * power_of_two(-20);
 }
 

@@ -294,7 +294,7 @@ ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
     if (!wide.vertex.found) {
         return answer(check, Verdict::undecided, "no vertices around the stored place are proved");
     }
-    // clumps.md U8, what the product of the lengths changes by
+    // checker.md K28, what the product of the lengths changes by
     if (const std::string why = not_positive(wide); !why.empty() || !(growth(wide) < 1.1)) {
         return answer(check, Verdict::undecided, why.empty() ? "the lengths are not known well enough" : why);
     }

@@ -280,7 +280,7 @@ std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b)
                     room += bare.load_room[i];
                 }
             }
-            along += 0.5 * load * (n[k] - m[k]); // stability.md S4 (mean of two normals)
+            along += 0.5 * load * (n[k] - m[k]); // exact: a half: mean of two normals (S4)
             room += size * (std::hypot(n[0] + m[0], n[1] + m[1]) + turn_tolerance);
         }
         // S4 (b): f_b - f_a = -along

@@ -74,7 +74,7 @@ std::optional<Contact> fixed_overlap(const Packing& packing) {
     };
     if (packing.cell.any() || std::ranges::find(packing.fixed, 1) != packing.fixed.end()) {
         for (const Contact& pair :
-             // contact_candidates.md T6 (half of the reach, and any reach finds overlaps)
+             // contact_candidates.md Displacements (any reach finds overlaps)
              near_pairs(packing, 0.5 * packing.min_radius()).pairs) {
             look(pair);
         }
@@ -89,7 +89,7 @@ bool CandidateList::covers(const Packing& packing, double radius) const {
     }
     if (packing.cell.any()) {
         const CellDrift drift = cell_drift(*this, packing);
-        // 0.5: contact_candidates.md T6 (half of the reach, and any reach finds overlaps); 1e-14: contact_candidates.md
+        // 0.5: contact_candidates.md Displacements (half of the reach); 1e-14: contact_candidates.md
         // covers
         return drift.used + drift.rate * radius < 0.5 * reach * (1 - 1e-14);
     }
@@ -167,7 +167,7 @@ Admissibility certify_admissible(const Packing& packing, double allowance, const
         }
     } else {
         const auto from = known != nullptr ? known->triangulation : nullptr;
-        // contact_candidates.md T6 (half of the reach, and any reach finds overlaps)
+        // contact_candidates.md Displacements (any reach finds overlaps)
         for (const Contact& contact : near_pairs(packing, 0.5 * packing.min_radius(), from).pairs) {
             look(contact);
         }

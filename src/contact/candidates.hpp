@@ -15,8 +15,8 @@ namespace isostat {
 class RegularTriangulation;
 
 /// Of the smallest radius: how far candidates are listed, and the most that statement T6 allows.
-inline constexpr double candidate_fraction = 0.8;          // contact_candidates.md T6 (below 0.82)
-inline constexpr double largest_candidate_fraction = 0.82; // contact_candidates.md T6
+inline constexpr double candidate_fraction = 0.8;          // cost: below the 0.82 of contact_candidates.md
+inline constexpr double largest_candidate_fraction = 0.82; // contact_candidates.md Rounded weights
 
 /// Every pair that can come into contact before the displacements exceed the list's reach.
 struct CandidateList {

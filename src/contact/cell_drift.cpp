@@ -69,7 +69,7 @@ struct Strain {
 };
 
 // cells.md C8 (roundings)
-constexpr double rounding = 0x1p-46; // for two dozen operations on lengths, times strains up to 4
+constexpr double rounding = 0x1p-46; // for two dozen operations on lengths, times strains below 1
 
 /// The left-hand side of C8 for a displacement, without its roundings: moved(k) of coordinate k.
 struct Used {
@@ -122,8 +122,8 @@ struct Used {
         }
         const double stretched = packing.max_radius() + 0.5 * list.reach; // exact: a half (cells.md C8)
         strain = Strain::norm(affine.e);
-        used = (farthest + strain * stretched) * (1 + 1e-12);            // cells.md C8 (roundings of the sum)
-        rate = (1 + (extent + stretched) * affine.inverse) * (1 + 1e-9); // cells.md C8 (roundings of the rate)
+        used = (farthest + strain * stretched) * (1 + 1e-12);            // cells.md C8 (last operations)
+        rate = (1 + (extent + stretched) * affine.inverse) * (1 + 1e-9); // cells.md C8 (last operations)
     }
 };
 

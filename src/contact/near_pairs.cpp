@@ -19,8 +19,8 @@ namespace {
 // Constants of proofs/contact_candidates.md, section "Rounded weights". Disks shrunk
 // by the common shift 0.002 R_min^2 of their weights have exactly the power diagram
 // of the rounded weights; an edge may overlap by half of what this shift allows.
-constexpr double edge_overlap = 0.0005; // times R_min^2 (1/R_i + 1/R_j); contact_candidates.md T5 (rounded weights)
-// contact_candidates.md T6 allows 0.828 R_min: the rest is for the rounding of images
+constexpr double edge_overlap = 0.0005; // times R_min^2 (1/R_i + 1/R_j); contact_candidates.md Rounded weights
+// contact_candidates.md Rounded weights: 0.82 R_min, and the rest for the rounding of images
 constexpr double largest_reach = 0.825;
 // contact_candidates.md 1e5
 constexpr double largest_ratio = 1e5; // beyond it the rounding of R_max^2 is not small compared with the shift

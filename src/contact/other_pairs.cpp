@@ -62,7 +62,7 @@ OtherPairs other_pairs(const Packing& packing, const std::vector<Contact>& conta
 std::vector<Contact> touching_own_images(const Packing& packing) {
     std::vector<Contact> out;
     if (packing.cell.any()) {
-        // contact_candidates.md T6 (any reach finds what touches)
+        // contact_candidates.md Displacements (any reach finds what touches)
         for (const Contact& pair : near_pairs(packing, 0.5 * packing.min_radius()).pairs) {
             if (pair.i == pair.j && !can_move(packing, pair) && gap_sign(packing, pair, 0) == 0) {
                 out.push_back(pair);

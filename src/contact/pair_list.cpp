@@ -155,8 +155,8 @@ class Near {
 } // namespace
 
 bool lengths_are_plain(const std::vector<double>& x, const std::vector<double>& radius) {
-    constexpr double largest = 1e100;   // squares neither overflow; contact_candidates.md overflow
-    constexpr double smallest = 1e-100; // nor underflow; contact_candidates.md overflow
+    constexpr double largest = 1e100;   // squares neither overflow; contact_candidates.md lengths_are_plain
+    constexpr double smallest = 1e-100; // nor underflow; contact_candidates.md lengths_are_plain
     return std::ranges::all_of(radius, [](double r) { return r >= smallest && r <= largest; }) &&
            std::ranges::all_of(x, [](double c) { return std::abs(c) <= largest; }); // also false for a NaN
 }

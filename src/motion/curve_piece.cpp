@@ -99,7 +99,7 @@ void CurvePiece::bound_coefficients_of(std::size_t l) {
         if (k <= order) {
             sum.add(line, d[k]);
         }
-        // arcs.md A8
+        // 16: arcs.md A8; 8: precision.md B1 (last operations)
         bound[k] = (std::abs(sum.value) + (static_cast<double>(k) + 16) * u * sum.absolute) / length * (1 + 8 * u);
     }
 }

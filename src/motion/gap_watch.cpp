@@ -46,7 +46,7 @@ struct GapWatch::Motion {
     };
     [[nodiscard]] View view(double from, double to) const {
         const double s = 0.5 * (from + to);
-        const double half = std::max(to - s, s - from) * (1 + 4 * u); // arcs.md A8 (rounding of a half width)
+        const double half = std::max(to - s, s - from) * (1 + 4 * u); // precision.md B1 (last operations)
         const Course course = at(s, std::max(std::abs(from), std::abs(to)));
         return wall ? view_of_wall(course, half) : view_of_disks(course, half);
     }

@@ -252,7 +252,7 @@ bool MovingPart::complete(const CurvePiece& piece, double h, const CandidateList
             used += power * drift_along(list, piece.centre(), coefficient);
             power *= h;
         }
-        return used * upward < 0.5 * list.reach; // cells.md C8 (half the reach)
+        return used * upward < 0.5 * list.reach; // exact: a half (cells.md C8)
     }
     const std::size_t axes = piece.centre().axes();
     const double unit = 1 / list.reach; // squares then neither under- nor overflow in any unit

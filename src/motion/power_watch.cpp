@@ -30,7 +30,7 @@ struct PowerWatch::Power {
     /// P lies above this for s in [from, to].
     [[nodiscard]] double low(double from, double to) const {
         const double s = 0.5 * (from + to);                           // exact: a half
-        const double half = std::max(to - s, s - from) * (1 + 4 * u); // 4: arcs.md A8 (Horner and half width)
+        const double half = std::max(to - s, s - from) * (1 + 4 * u); // precision.md B1 (last operations)
         const double h = std::max(std::abs(from), std::abs(to));
         double value = 0;
         for (std::size_t k = c.size(); k-- > 0;) {
@@ -44,6 +44,7 @@ struct PowerWatch::Power {
                 change += static_cast<double>(k) * power * std::abs(c[k]);
                 power *= h;
             }
+            // 4: arcs.md A8 (Horner, 4 n u)
             rounding += power * (c_open[k] + 4 * static_cast<double>(c.size()) * u * std::abs(c[k]));
         }
         double first = 0;

@@ -21,7 +21,7 @@ double rate_of_areas(const Packing& packing) {
     for (int a = 0; a < packing.dimension; ++a) {
         longest = std::max(longest, packing.length(a));
     }
-    // bounds.md V3 (affine combination), true_vertex.md V6 (rate of areas)
+    // true_vertex.md V6 (rate_of_areas)
     return packing.dimension == plane ? 1 : 4 * longest;
 }
 
@@ -42,7 +42,7 @@ Statics::Statics(const Packing& packing, const Load& load, const IsostaticStruct
         return std::vector<double>(x.begin(), x.end());
     };
     const double rate = follows ? rate_of_areas(packing) : 0;
-    // bounds.md V3 (affine combination), true_vertex.md V6 (rate of areas)
+    // precision.md B1 (last operations)
     LoadTerms now{{}, rate * stress * (1 + 4 * u)};
     LoadTerms per_unit{{}, rate};
     double fastest = 1; // of the stresses, as the loaded one changes by 1
@@ -128,7 +128,7 @@ Enclosure Statics::force(ContactId contact, double sigma) const {
         double radius = a.bound + std::abs(low) * (1 + 2 * u);
         if (shift_) {
             const Enclosure b = slope(contact);
-            // 4: bounds.md V3 (affine combination), true_vertex.md V6 (rate of areas)
+            // 4: precision.md B1 (last operations)
             radius += shift_bound_ * (std::abs(b.value) + b.radius) * (1 + 4 * u);
         }
         return {a.value[l], radius};
@@ -140,7 +140,7 @@ Enclosure Statics::force(ContactId contact, double sigma) const {
     const double value = sum.x[0];
     const double size = std::abs(a.value[l]) + std::abs(distance.x[0] * b.value[l]);
     return {value,
-            // precision.md B9
+            // 0x1p-96: precision.md B9; 4: precision.md B1 (last operations)
             (a.bound + std::abs(distance.x[0]) * b.bound) * (1 + 4 * u) + 0x1p-96 * size + 2 * u * std::abs(value)};
 }
 

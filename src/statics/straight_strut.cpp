@@ -321,7 +321,7 @@ Enclosure excess_over(const Statics& statics, std::size_t a, std::size_t b, cons
     double value = 0;
     double bend = 0;
     for (std::size_t k = 0; k < plane; ++k) {
-        value -= 0.5 * load[k] * (from_a[k] - from_b[k]); // stability.md S4 (mean of two normals)
+        value -= 0.5 * load[k] * (from_a[k] - from_b[k]); // exact: a half: mean of two normals (S4)
         bend += std::abs(from_a[k] + from_b[k]);
     }
     // The normal of the straight strut lies between the two stored ones; each is known to `normal_uncertainty`.

@@ -52,7 +52,7 @@ template <> class Arithmetic<dd_real> : public ArithmeticOfDoubles<dd_real> {
     static constexpr Rung rung = Rung::double_double;
     static constexpr int corrections = 8; // 8: cost: passes
     static constexpr int refinements = 8;
-    static double unit() { return 0x1p-98; } // true_vertex.md V5 (e of double-double)
+    static double unit() { return 0x1p-98; } // true_vertex.md Arithmetic (e of double-double)
     static dd_real difference(double a, double b) { return dd_real::sub(a, b); }
     static dd_real product(double a, double b, double c = 1) { return dd_real::mul(a, b) * c; }
     static double rounded(const dd_real& x) { return x.x[0]; }

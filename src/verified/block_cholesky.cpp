@@ -431,7 +431,7 @@ double BlockCholesky::largest_ratio(const std::vector<double>& relative, double 
         largest_x = std::max(largest_x, image);
     }
     for (double& c : x) {
-        c = std::max(c / largest_x, 1e-9); // bounds.md V1: any x > 0 gives a bound; no ratio may over- or underflow
+        c = std::max(c / largest_x, 1e-9); // cost: any x > 0 gives a bound (bounds.md V1)
     }
     return largest;
 }

@@ -152,7 +152,7 @@ std::optional<ProvedExchange> carry_bound(const IsostaticStructure& before, cons
     if (!change || !(bound.sigma_min - *change > worth * started_with)) {
         return std::nullopt;
     }
-    // 4: exchange.md V8 (last operations)
+    // 4: precision.md B1 (last operations)
     const double kept = (bound.sigma_min - *change) * (1 - 4 * u); // of G_-, N - 1 rows
     const double size_of_guess = euclidean_norm(mechanism);
     for (double& c : mechanism) {

@@ -18,8 +18,8 @@ namespace {
 using roundoff::u;
 /// Kantorovich's radius of existence for |F| <= residual and |DF^-1| <= inverse_norm, or NaN when its test fails.
 double kantorovich_radius(double residual, double inverse_norm, double lipschitz_constant) {
-    const double eta = inverse_norm * residual * (1 + 4 * u);                     // bounds.md V4 (last operations)
-    const double product = inverse_norm * lipschitz_constant * eta * (1 + 8 * u); // bounds.md V4 (8uD, 8u)
+    const double eta = inverse_norm * residual * (1 + 4 * u);                     // precision.md B1 (last operations)
+    const double product = inverse_norm * lipschitz_constant * eta * (1 + 8 * u); // precision.md B1 (last operations)
     // bounds.md T9
     return product <= 0.25 ? 2 * eta : std::numeric_limits<double>::quiet_NaN(); // (1 - sqrt(1-2h)) / h <= 2
 }
@@ -32,7 +32,7 @@ double VertexEnclosure::distance() const {
     for (const double c : correction) {
         size.push_back(std::abs(c));
     }
-    return (radius + norm_above(size)) * (1 + 0x1p-50); // precision.md B1 (one sum)
+    return (radius + norm_above(size)) * (1 + 0x1p-50); // precision.md B1 (last operations)
 }
 
 VertexEnclosure enclose_vertex(const Packing& packing, const IsostaticStructure& structure,
@@ -49,7 +49,7 @@ VertexEnclosure enclose_vertex(const Packing& packing, const IsostaticStructure&
             worst_ratio = std::max(worst_ratio, std::abs(h) / d);
         }
         // |F| <= |h| (1 + |h|/2D), and |h|/D is checked below; the computed gap is off by less than 8u D.
-        // 8: bounds.md V4 (8uD, 8u); 1.001: bounds.md V4 (rounding, double)
+        // 8: bounds.md V4 (8u of a gap, 8u of D/d); 1.001: bounds.md V4 (rounding, double)
         bounds.push_back(std::abs(h) * 1.001 + 8 * u * d + underflow_unit);
     }
     if (inverse.verdict != Verdict::proved || !(worst_ratio < 1e-3)) { // bounds.md V4 (test of the gaps)
@@ -79,7 +79,7 @@ VertexEnclosure enclose_vertex_double_double(const Packing& packing, const Isost
         correction.push_back(p.x[0]);
         lost.push_back(p.x[1]);
     }
-    const double radius = (found.radius() + norm_above(lost)) * (1 + 4 * u); // bounds.md V4 (last operations)
+    const double radius = (found.radius() + norm_above(lost)) * (1 + 4 * u); // precision.md B1 (last operations)
     if (found.exists() && radius < vertex.radius) {
         vertex.verdict = Verdict::proved;
         vertex.radius = radius;
@@ -97,14 +97,14 @@ Enclosure gap_at_vertex(const Packing& packing, const VertexEnclosure& vertex, c
     const double d = target(packing, contact);
     if (vertex.correction.empty()) {
         const double h = gap(packing, contact);
-        // 4: bounds.md V4 (last operations); 8: bounds.md V4 (8uD, 8u)
+        // 4: precision.md B1 (last operations); 8: bounds.md V4 (8u of a gap)
         return {h, (weight * vertex.radius + 8 * u * (std::abs(h) + d)) * (1 + 4 * u)};
     }
     using A = Arithmetic<dd_real>;
     const CorrectedConfiguration<dd_real, std::span<const double>> at(A(), packing, vertex.correction);
     const double value = A::rounded(at.gap(contact));
     return {value,
-            // precision.md B3
+            // precision.md B3 (16 e; four roundings)
             (weight * vertex.radius + 16 * A::unit() * (std::abs(value) + d) + 2 * u * std::abs(value)) * (1 + 4 * u)};
 }
 

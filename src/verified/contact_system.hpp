@@ -29,7 +29,7 @@ template <class T> class ContactSystem {
                   const Factorisation& factorisation)
         : arithmetic_(vertex.at().arithmetic()), packing_(vertex.at().packing()), structure_(structure),
           factorisation_(factorisation), matrix_(vertex.at().contact_matrix(structure, Place::Divided::by_lengths)),
-          // true_vertex.md V6 (last operations)
+          // precision.md B1 (last operations)
           radius_(vertex.radius()), uncertainty_(vertex.lipschitz() * vertex.radius() * (1 + 4 * u)),
           sigma_(vertex.sigma()) {}
     /// |H* - H| <= uncertainty, H the unit normals at `place`; `sigma` > 0 a lower bound of the smallest singular value
@@ -115,7 +115,7 @@ template <class T> auto ContactSystem<T>::turned(const std::vector<T>& x, bool t
     if (transposed || radius_ <= 0) { // |H* - A| |x|
         std::vector<Bound> size(x.size());
         std::transform(x.begin(), x.end(), size.begin(), [&](const T& c) { return a.size(c); });
-        // true_vertex.md V6 (last operations)
+        // precision.md B1 (last operations)
         return uncertainty_ <= 0 ? Bound(0) : uncertainty_ * norm_of_bounds(size) * (1 + 4 * u);
     }
     if (packing_.cell.any()) {
@@ -149,7 +149,7 @@ BoundedVector<T> ContactSystem<T>::refine(const std::vector<T>& load, const Boun
     std::vector<double> step(x.size());
     for (int iteration = 0; iteration <= a.refinements + 1; ++iteration) {
         const Residual r = residual(load, x, transposed);
-        // true_vertex.md V6 (c + 8)
+        // precision.md B1 (last operations)
         const Bound bound = (r.norm + load_error + turned(x, transposed)) / sigma_ * (1 + 8 * u);
         const bool enough = !(bound < 0.5 * best.bound); // cost: lost below 1/2, and when iterations stop
         if (bound < best.bound) {

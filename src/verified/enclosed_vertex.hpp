@@ -21,7 +21,7 @@ struct Neighbourhood {
         // true_vertex.md V5 (test of the gaps)
         const bool known = inverse.verdict == Verdict::proved && relative_gap < 1e-3; // false for a NaN
         return {isostat::lipschitz(packing, contacts),
-                // 16: bounds.md V4 (b), 8u granted there; 4: bounds.md V4 (b), three roundings
+                // 16: bounds.md V4 (b), 8u granted there; 4: precision.md B1 (last operations)
                 known ? (1 + 2 * relative_gap + 16 * u) / inverse.sigma_min * (1 + 4 * u)
                       : std::numeric_limits<double>::infinity()};
     }
@@ -55,7 +55,7 @@ template <class T> class EnclosedVertex {
     /// Lower bound of the smallest singular value of the contact matrix at the true vertex.
     [[nodiscard]] double sigma() const { return sigma_; }
     /// Bound of |q* - q|.
-    // true_vertex.md V5 (rounding of bounds)
+    // precision.md B1 (last operations)
     [[nodiscard]] Bound distance() const { return (shift_ + radius_) * (1 + 4 * u); }
 
   private:
@@ -95,7 +95,7 @@ template <class T> bool EnclosedVertex<T>::accept(const Bound& residual) {
     }
     const Bound largest = *std::max_element(moved.begin(), moved.end());
     const Bound shift = norm_of_bounds(moved);
-    // 4: true_vertex.md V5 (rounding of bounds)
+    // 4: precision.md B1 (last operations)
     const double lost = above(at_q_.inverse_norm * k * shift * (1 + 4 * u));
     // 0x1p-10: true_vertex.md V5 (size of p); 0.5: cost: lost below 1/2, and when iterations stop
     lost_ = !(largest <= 0x1p-10 * at_.packing().min_radius() && lost < 0.5);
@@ -141,7 +141,8 @@ void EnclosedVertex<T>::enclose(const IsostaticStructure& structure, const Facto
     }
     if (exists_) {
         at_.correct(std::move(accepted));
-        sigma_ = (1 / derivative_ - above(at_q_.lipschitz * radius_)) * (1 - 8 * u); // true_vertex.md V5 (8e D)
+        // precision.md B1 (last operations)
+        sigma_ = (1 / derivative_ - above(at_q_.lipschitz * radius_)) * (1 - 8 * u);
     }
 }
 

@@ -69,7 +69,7 @@ double shifted_cholesky_double_double(const sparse::Matrix<double>& h, double sh
         sum += m * 0x1p-96 * (2 * diagonal[row] + shift); // bounds.md V1 (second rung)
     }
     const double bound = shift - sum * 1.01 - 1e-290; // bounds.md V1
-    return bound > 0 ? bound * (1 - 0x1p-50) : 0;     // bounds.md V1 (last operations)
+    return bound > 0 ? bound * (1 - 0x1p-50) : 0;     // precision.md B1 (last operations)
 }
 
 } // namespace isostat

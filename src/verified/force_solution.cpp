@@ -95,7 +95,7 @@ ForceSolution solve_forces(const IsostaticStructure& structure, const Factorisat
         residual = residual_in_double(h, solution.value, force, r);
     }
     solution.residual = max_abs(r);
-    // bounds.md V3 (last operations)
+    // precision.md B1 (last operations)
     solution.bound = inverse.verdict == Verdict::proved ? residual.bound / inverse.sigma_min * (1 + 4 * u)
                                                         : std::numeric_limits<double>::infinity();
     return solution;

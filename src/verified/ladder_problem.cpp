@@ -63,7 +63,7 @@ auto LadderProblem::stored_distance() -> const Distance& {
         stored_distance_ = Distance{};
         if (vertex != nullptr) {
             const double away = vertex->verdict == Verdict::proved
-                                    // precision.md B6 (last operations)
+                                    // precision.md B1 (last operations)
                                     ? (vertex->radius + norm_above(vertex->correction)) * (1 + 4 * u)
                                     : std::numeric_limits<double>::infinity();
             stored_distance_ = Distance{away, normal_rate() * away};
@@ -94,16 +94,16 @@ void LadderProblem::inflate(RightHandSide& part) {
     ForceSolution& s = part.solution;
     const Distance& here = stored_distance();
     const double sigma = inverse.sigma_min;
-    const double left = (sigma - here.uncertainty) * (1 - 8 * u); // precision.md B6 (last operations)
+    const double left = (sigma - here.uncertainty) * (1 - 8 * u); // precision.md B1 (last operations)
     if (!(left > sigma / 2)) {
         s.bound = std::numeric_limits<double>::infinity();
         return;
     }
-    // precision.md B6 (last operations)
+    // precision.md B1 (last operations)
     const double turned = std::min(here.uncertainty * norm_above(s.value) * (1 + 4 * u), // bounds |(H* - H) x|
                                    turn_of_forces(packing, structure.contacts(), s.value) * here.away);
     const double residual = s.bound * sigma + turned + part.terms.rate * here.away;
-    s.bound = residual / left * (1 + 16 * u); // precision.md B6 (c)
+    s.bound = residual / left * (1 + 16 * u); // precision.md B6
 }
 
 } // namespace isostat

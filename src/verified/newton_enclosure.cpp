@@ -114,7 +114,7 @@ Constraints constraints(const Packing& packing, const std::vector<Contact>& cont
             const Pair x = separation.of_wall_at_length(at, minus);
             const Pair sum = exact_sum(x.sum, -(scale * radius[i]));
             const double f = sum.sum + (sum.error + x.error);
-            found = {f, 4 * u * std::abs(f) + 0x1p-98 * std::abs(length)}; // bounds.md V4 (Newton step)
+            found = {f, 4 * u * std::abs(f) + 0x1p-98 * std::abs(length)}; // bounds.md V4 (Newton step, walls)
         } else if (contacts[l].is_wall()) {
             const double f = separation.of_wall(at, std::minus<>()) - scale * radius[i];
             found = {f, 2 * u * std::abs(f)};
@@ -129,7 +129,7 @@ Constraints constraints(const Packing& packing, const std::vector<Contact>& cont
     const int most = count.empty() ? 0 : *std::max_element(count.begin(), count.end());
     result.lipschitz = packing.cell.any() ? lipschitz_in_cell(packing, contacts) / scale
                        : most == 0        ? 0
-                                   // bounds.md V4 (a), rounding of K
+                                   // precision.md B1 (last operations)
                                    : 2 * std::sqrt(most) / smallest * (1 + 0x1p-49);
     return result;
 }
@@ -187,17 +187,17 @@ VertexEnclosure newton(const Constraints& at, const sparse::Matrix<double>& h, c
     for (int pass = 1; pass <= max_passes; ++pass) {
         left.after(step, at, h);
         const double length = norm_above(step);
-        const double rest = inverse_norm * norm_above(left.bound) * (1 + 4 * u); // bounds.md V4 (Newton step)
-        const double eta = (length + rest) * (1 + 4 * u);                        // bounds.md V4 (Newton step)
-        const double product = inverse_norm * at.lipschitz * eta * (1 + 8 * u);  // bounds.md V4 (b)
-        // bounds.md V4 (b)
+        const double rest = inverse_norm * norm_above(left.bound) * (1 + 4 * u); // precision.md B1 (last operations)
+        const double eta = (length + rest) * (1 + 4 * u);                        // precision.md B1 (last operations)
+        const double product = inverse_norm * at.lipschitz * eta * (1 + 8 * u);  // precision.md B1 (last operations)
+        // precision.md B1 (last operations)
         const double radius = eta * (1 + product) * (1 + 8 * u); // (1 - sqrt(1 - 2h)) / h <= 1 + h up to 1/4
         if (product <= 0.25 && radius < vertex.radius) {         // 0.25: bounds.md V4 (e)
             vertex.verdict = Verdict::proved;
             vertex.radius = radius;
         }
         // The exact step ends within `rest` of this one, and the vertex is at most eta * product from its end.
-        // bounds.md V4 (e), last operations
+        // 0.25: bounds.md V4 (e); 8: precision.md B1 (last operations)
         vertex.step_radius = product <= 0.25 ? (rest + eta * product) * (1 + 8 * u) : roundoff::infinity;
         if (!(rest > enough * length) || pass == max_passes) {
             break;

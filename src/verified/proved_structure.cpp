@@ -37,12 +37,12 @@ std::unique_ptr<ProvedStructure> ProvedStructure::shared() const {
 }
 
 Result<std::unique_ptr<ProvedStructure>> ProvedStructure::moved(Packing there, double farthest) const {
-    // true_vertex.md V5 (roundings of a distance)
+    // precision.md B1 (last operations)
     const double distance = std::sqrt(static_cast<double>(there.q.size())) * farthest * (1 + 4 * u);
     const double gaps = worst_gap_ratio(packing, structure.contacts());
     const double turning = lipschitz(packing, structure.contacts());
     InverseBound bound = inverse;
-    // bounds.md V4 (b), three roundings
+    // precision.md B1 (last operations)
     bound.sigma_min -= normal_rate(turning) * distance * (1 + 4 * u);
     bound.sigma_min *= 1 - 2 * u;
     // true_vertex.md V5 (a centre that was moved)

@@ -109,7 +109,7 @@ template <class T> std::vector<T> RefinedRung<T>::guess(const RightHandSide& par
 template <class T> void RefinedRung<T>::solve(RightHandSide& part) {
     this->problem_.solve_in_double(part, 0);
     const double rate = part.terms.rate;
-    // precision.md B2 (d)
+    // precision.md B1 (last operations)
     const double error = rate == 0 || !vertex_ ? 0 : rate * above(vertex_->distance()) * (1 + 4 * u);
     std::vector<T> start = guess(part);
     BoundedVector<T> solved = system_.forces(load(part), error, start);

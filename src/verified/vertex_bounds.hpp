@@ -43,7 +43,7 @@ inline double separation_weight_square(const Contact& contact) {
 }
 inline double separation_weight(const Contact& contact) {
     using roundoff::root2;
-    // bounds.md V4 (a), rounding of K
+    // precision.md B1 (last operations)
     return contact.image.is_here() ? root2 : std::sqrt(separation_weight_square(contact)) * (1 + 0x1p-50);
 }
 
@@ -112,7 +112,7 @@ inline double lipschitz(const Packing& packing, const std::vector<Contact>& cont
         }
     }
     const double most = *std::max_element(count.begin(), count.end());
-    return most == 0 ? 0 : 2 * std::sqrt(most) / smallest * (1 + 0x1p-50); // cells.md C5, rounding of w
+    return most == 0 ? 0 : 2 * std::sqrt(most) / smallest * (1 + 0x1p-50); // precision.md B1 (last operations)
 }
 
 /// Largest |gap| / D over the disk contacts.

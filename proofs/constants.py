@@ -5,7 +5,8 @@
   python3 proofs/constants.py --list    prints file, line, number and mark, separated by tabs
 
 A mark is a part of a // comment, at the line of the number or directly above; "; " separates the parts of a comment:
-  page.md LABEL ...        a statement: the page of proofs/ has the word LABEL
+  page.md LABEL ...        a statement: the page of proofs/ has the word LABEL, and says the number after the
+                           heading or bold words with LABEL, or in a paragraph with LABEL
   cost: ...                changes how long it takes, or when something is given up as undecided, and no answer
   choice: ...              a choice that pages call one (a rule, a default, a limit of a record)
   exact: ...               a factor or size that is exact (a half, the bits of a type, a format)
@@ -14,6 +15,7 @@ A mark is a part of a // comment, at the line of the number or directly above; "
 One mark holds for the numbers of its line that have none of their own. "0.5: exact: a half" is the mark of 0.5 from there to the
 end of the function; "guess: all other numbers of this file: ..." holds for the file. 0, 1 and 2 have no mark (indices, squares,
 signs), nor have comments and strings."""
+import functools
 import pathlib
 import re
 import sys
@@ -47,6 +49,38 @@ def marks_of(text):
             elif page and not re.search(rf"(?<!\w){re.escape(label)}(?!\w)", (top / "proofs" / page).read_text()):
                 problem = f"proofs/{page} has no '{label}'"
             yield found[1], found[2], problem
+
+
+words = dict(enumerate("three four five six seven eight nine ten eleven twelve".split(), 3))
+shares = {1 / 2: "hal(f|ves|ved)|1/2", 1 / 4: "quarter|1/4", 1 / 10: "tenth", 1 / 100: "hundredth", 16: "sixteenth"}
+starts = re.compile(r"^(?=#{2,} |\*\*[A-Z]+\d)", re.M)
+
+
+def spellings(n):
+    """A regular expression for the ways to write a number of the code on a page, where u is 2^-53."""
+    value = float.fromhex(n) if n[:2].lower() == "0x" else float(n.replace("'", ""))
+    units = value * 2.0**53
+    ways = [re.escape(n), re.escape(f"{value:g}"), words.get(value), shares.get(value)]
+    ways += [rf"2\^{re.escape(power)}" for power in re.findall(r"^0x1p(.+)", n)]
+    ways += [rf"10\^{re.escape(power)}" for power in re.findall(r"^1e(.+)", n)]
+    ways += [f"{units:.0f} ?u"] if "p" in n and 1 < units < 1e6 else []
+    return rf"(?<![\w.])({'|'.join(filter(None, ways))})(?!\w?\.?\d)"
+
+
+@functools.lru_cache(None)
+def statement(page, label):
+    """What follows the headings and the bold words with the label, or else all paragraphs with it."""
+    text = (top / "proofs" / page).read_text()
+    has = re.compile(rf"(?<!\w){re.escape(label)}(?!\w)")
+    parts = [part for part in starts.split(text) if has.search(re.match(r"(#{2,}.*|\*\*.*?\*\*)?", part)[0])]
+    return "\n".join(parts or [part for part in text.split("\n\n") if has.search(part)])
+
+
+def unsaid(n, reason):
+    """Where the mark of a number names a statement that does not say the number, the words for this."""
+    page, label = mark.fullmatch(reason).group(3, 4)
+    said = not page or not (top / "proofs" / page).is_file() or re.search(spellings(n), statement(page, label), re.I)
+    return [] if said else [f"proofs/{page}, {label}, does not say {n}"]
 
 
 def check(path):
@@ -85,6 +119,7 @@ def check(path):
         if text.startswith("}"):
             faults += unused(named)
             named = {}
+    faults += [(at, problem) for at, n, reason in rows for problem in unsaid(n, reason)]
     return rows, faults + unused(named) + (unused({"all": others}) if others else [])
 
 

@@ -1,13 +1,13 @@
 #!/bin/bash
 # The check of constants must find each kind of rot: a number without a mark, a mark without a number, without a page, without a
-# statement, without a reason.
+# statement, without a reason, with a statement of another number.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 top=$(mktemp -d)
 trap 'rm -rf "$top"' EXIT
 mkdir -p "$top/proofs" "$top/src/verified"
 cp "$here/constants.py" "$top/proofs"
-echo '**V9.** Five units.' >"$top/proofs/page.md"
+printf '**V9.** Three or 4 terms, of 5.01 units, then 8u.\n\n**V10.** 7.01, and 3.\n' >"$top/proofs/page.md"
 code=$top/src/verified/a.cpp
 write() {
     cat >"$code" <<'END'
@@ -30,6 +30,9 @@ write
 check >/dev/null || { check; echo "right marks were refused"; exit 1; }
 python3 "$top/proofs/constants.py" --list | grep -P '^src/verified/a.cpp\t10\t5.01\tpage.md V9, which is long enough to be continued on another line$' >/dev/null ||
     { echo "--list does not show a mark above its line"; exit 1; }
+sed -i 's/0x1p-53: exact: u/0x1p-50: page.md V9/; s/0x1p-53/0x1p-50/' "$code"
+check >/dev/null || { check; echo "2^-50 is not found as 8u"; exit 1; }
+write
 number=0
 finds() { # words of the message; the rot was made
     number=$((number + 1))
@@ -48,6 +51,9 @@ sed -i 's/0x1p-53 \*/u */' "$code"; finds "a.cpp:4: '0x1p-53: exact: u' belongs 
 sed -i 's/double h = 1e-3;//' "$code"; finds "a.cpp:2: 'all: guess: all other numbers of this file: of a search' belongs to no number"
 sed -i 's/: page.md/: paper.md/' "$code"; finds 'proofs/paper.md is no page'
 sed -i 's/V9 (/V8 (/' "$code"; finds "proofs/page.md has no 'V8'"
+sed -i 's/V9 (/V10 (/' "$code"; finds "a.cpp:4: proofs/page.md, V10, does not say 5.01"
+sed -i 's/V9, which/V10, which/' "$code"; finds "a.cpp:10: proofs/page.md, V10, does not say 4"
+sed -i 's/0x1p-53: exact: u/0x1p-50: page.md V10/; s/0x1p-53/0x1p-50/' "$code"; finds "a.cpp:4: proofs/page.md, V10, does not say 0x1p-50"
 sed -i 's/; 0x1p-53: exact: u/; 0x1p-53: exact:/; 1d' "$code"; finds 'a.cpp:3: 0x1p-53 has no mark of its own'
 mkdir "$top/src/core"; mv "$code" "$top/src/core"; check >/dev/null || { echo "a file that moved to another room was refused"; exit 1; }
 echo "the check of constants finds each of $number kinds of rot"

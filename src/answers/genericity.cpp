@@ -59,12 +59,12 @@ std::string list_text(const std::vector<Contact>& list, const std::vector<Contac
                        gained > most ? fmt::format(" and {} more", gained - most) : "");
 }
 
-Json sample_json(const GenericitySample& sample) {
+Json sample_json(const GenericitySample& sample, int dimension) {
     Json out;
     out["seed"] = sample.seed;
     if (sample.failure) {
         out["failure"] = to_string(sample.failure->kind);
-        out["reason"] = sample.failure->message();
+        out["reason"] = sample.failure->message(dimension);
         return out;
     }
     out["h"] = 0;
@@ -91,13 +91,13 @@ void print_lists(std::string& out, const GenericityAnswer& a, const Genericity& 
 }
 
 /// Prints why samples of one size failed: the number of each kind, and its first reason.
-void print_failures(std::string& out, const Genericity& result, double size) {
+void print_failures(std::string& out, const Genericity& result, double size, int dimension) {
     std::map<std::string, std::pair<int, std::string>> reasons;
     for (const GenericitySample& sample : result.samples) {
         if (sample.failure) {
             auto& reason = reasons[to_string(sample.failure->kind)];
             if (reason.first++ == 0) {
-                reason.second = fmt::format("seed {}: {}", sample.seed, sample.failure->message());
+                reason.second = fmt::format("seed {}: {}", sample.seed, sample.failure->message(dimension));
             }
         }
     }
@@ -116,7 +116,7 @@ GenericityOriginal read_original(const std::string& file) {
         const crafted::PackingFile crafted = crafted::parse_packing(text, file);
         const auto inspection = crafted::inspect_file(crafted, file);
         if (!inspection.ok()) {
-            refuse(file, inspection.failure().message());
+            refuse(file, inspection.failure().message(crafted.packing.dimension()));
         }
         out.packing = crafted::approximate(crafted.packing);
         out.contacts = unilateral(inspection.value().contacts);
@@ -189,7 +189,9 @@ Answer row_of(const GenericityAnswer& a, const Genericity& result, double size) 
                 {"rungs", result.rungs()},
                 {"distinct_networks", result.lists.size()},
                 {"networks", Json::array()},
-                {"samples", json::array_of(result.samples, sample_json)}};
+                {"samples", json::array_of(result.samples, [&](const GenericitySample& sample) {
+                     return sample_json(sample, a.original.packing.dimension);
+                 })}};
     for (std::size_t k = 0; k < result.lists.size() && k < a.lists; ++k) {
         out.json["networks"].push_back(
             {{"samples", result.lists[k].samples},
@@ -227,7 +229,7 @@ std::string closing_text(const GenericityAnswer& a, const std::vector<Genericity
         "the samples.\n");
     for (std::size_t s = 0; s < results.size(); ++s) {
         print_lists(out, a, results[s], sizes[s]);
-        print_failures(out, results[s], sizes[s]);
+        print_failures(out, results[s], sizes[s], a.original.packing.dimension);
     }
     return out;
 }

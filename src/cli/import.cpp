@@ -451,7 +451,8 @@ int import(const ImportArguments& arguments) {
     const bool as_is = found.ok() && found.value().as_listed;
     const bool refuted = found.ok() && found.value().verdict() == Verdict::refuted;
     if (!found.ok() || (refuted && !as_is)) {
-        const std::string why = found.ok() ? found.value().truth.refuted.front() : found.failure().message();
+        const std::string why =
+            found.ok() ? found.value().truth.refuted.front() : found.failure().message(file.packing.dimension);
         say(stderr, "isostat: {}: {}{}\n", a.file, why, advice(a, crafted, file.packing));
         return refuted ? failed : status_of(found.failure().kind);
     }

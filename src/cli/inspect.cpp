@@ -19,7 +19,7 @@ int inspect_packing(const InspectArguments& arguments) {
     const crafted::PackingFile file = crafted::read_packing(arguments.file);
     const Result<crafted::Inspection> result = crafted::inspect_file(file, arguments.file);
     if (!result.ok()) {
-        refuse(arguments.file, result.failure().message());
+        refuse(arguments.file, result.failure().message(file.packing.dimension()));
     }
     const crafted::Inspection& inspection = result.value();
     if (arguments.common.json) {

@@ -70,13 +70,14 @@ py::array_t<double> interval_array(const std::vector<Interval>& intervals);
 /// The member of isostat.Verdict.
 py::object verdict_object(Verdict verdict);
 
-/// Throws the exception of isostat that belongs to a failure. \pre the interpreter is locked
-[[noreturn]] void raise(const Failure& failure);
+/// Throws the exception of isostat that belongs to a failure of a packing of that dimension. \pre the interpreter is
+/// locked
+[[noreturn]] void raise(const Failure& failure, int dimension);
 
 /// The value, or the exception.
-template <class T> T value_or_raise(Result<T>&& result) {
+template <class T> T value_or_raise(Result<T>&& result, int dimension) {
     if (!result.ok()) {
-        raise(result.failure());
+        raise(result.failure(), dimension);
     }
     return std::move(result.value());
 }

@@ -131,7 +131,8 @@ struct CraftedInspection {
 };
 
 std::vector<Contact> contacts_of(const Crafted& crafted) {
-    return crafted.contacts ? *crafted.contacts : value_or_raise(crafted::exact_contacts(crafted.packing));
+    return crafted.contacts ? *crafted.contacts
+                            : value_or_raise(crafted::exact_contacts(crafted.packing), crafted.packing.dimension());
 }
 
 Crafted parsed(const std::string& text, const std::string& source) {
@@ -153,7 +154,8 @@ CraftedInspection inspected(const Crafted& crafted) {
         return {crafted.packing,
                 interruptible([crafted] { return inspect_contacts(crafted.packing, *crafted.contacts); })};
     }
-    return {crafted.packing, value_or_raise(interruptible([crafted] { return crafted::inspect(crafted.packing); }))};
+    return {crafted.packing, value_or_raise(interruptible([crafted] { return crafted::inspect(crafted.packing); }),
+                                            crafted.packing.dimension())};
 }
 
 As<"list[dict[int, Exact]]"> exact_columns(const Crafted& crafted) {

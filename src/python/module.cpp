@@ -72,9 +72,9 @@ py::object verdict_object(Verdict verdict) {
     return ours("isostat._words", "Verdict")(std::string(to_string(verdict)));
 }
 
-void raise(const Failure& failure) {
+void raise(const Failure& failure, int dimension) {
     const py::object type = ours("isostat._words", "failure_of")(to_string(failure.kind));
-    PyErr_SetObject(type.ptr(), py::str(text::shown(failure.message())).ptr());
+    PyErr_SetObject(type.ptr(), py::str(text::shown(failure.message(dimension))).ptr());
     throw py::error_already_set();
 }
 

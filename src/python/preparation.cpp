@@ -12,7 +12,7 @@ namespace isostat::python {
 namespace {
 
 /// Handles Ctrl-C in a preparation: its progress polls for signals, its flag stops it, KeyboardInterrupt follows.
-template <class Work> std::shared_ptr<PyState> stoppable(PreparationOptions options, Work work) {
+template <class Work> std::shared_ptr<PyState> stoppable(int dimension, PreparationOptions options, Work work) {
     std::atomic<bool> stop{false};
     std::optional<py::error_already_set> raised;
     options.stop = &stop;
@@ -28,7 +28,7 @@ template <class Work> std::shared_ptr<PyState> stoppable(PreparationOptions opti
     if (raised) {
         throw py::error_already_set(*raised);
     }
-    return std::make_shared<PyState>(PyState{value_or_raise(std::move(result)), {}});
+    return std::make_shared<PyState>(PyState{value_or_raise(std::move(result), dimension), {}});
 }
 
 std::shared_ptr<PyState> prepare_disks(int disks, int dimension, std::uint64_t seed,
@@ -46,7 +46,8 @@ std::shared_ptr<PyState> prepare_disks(int disks, int dimension, std::uint64_t s
     options.diameters.largest = diameters.second;
     options.jitter = finite(jitter, "jitter");
     options.radii = radii.value_or(std::vector<double>());
-    return stoppable(options, [](const PreparationOptions& o, PreparationReport& r) { return prepare(o, r); });
+    return stoppable(dimension, options,
+                     [](const PreparationOptions& o, PreparationReport& r) { return prepare(o, r); });
 }
 
 std::shared_ptr<PyState> vertex_near(const Packing& packing, const std::optional<std::vector<double>>& given,
@@ -62,8 +63,9 @@ std::shared_ptr<PyState> vertex_near(const Packing& packing, const std::optional
     options.stress = finite(stress.front(), "stress");
     options.ratio = finite(stress.back() / stress.front(), "ratio of the stresses");
     options.seed = seed;
-    return stoppable(
-        options, [&packing](const PreparationOptions& o, PreparationReport& r) { return find_vertex(packing, o, r); });
+    return stoppable(packing.dimension, options, [&packing](const PreparationOptions& o, PreparationReport& r) {
+        return find_vertex(packing, o, r);
+    });
 }
 
 Packing read_any(const std::filesystem::path& path, const std::string& walls,

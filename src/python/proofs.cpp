@@ -164,7 +164,8 @@ void bind_inspect(py::module_& module) {
         "inspect",
         [](const PyState& state) {
             return value_or_raise(
-                interruptible([state] { return inspect_vertex(with_free_motions_held(state.state)); }));
+                interruptible([state] { return inspect_vertex(with_free_motions_held(state.state)); }),
+                state.state.packing.dimension);
         },
         py::arg("state"),
         "Inspection of a State: rank, forces, supported interval, gaps, stability. Raises NotIsostatic when h > 0 or "
@@ -333,7 +334,8 @@ void bind_forces(py::module_& module) {
         [](const PyState& state, double sigma) {
             const State copy = with_free_motions_held(state.state);
             finite(sigma, "sigma2");
-            return interval_array(value_or_raise(interruptible([copy, sigma] { return forces_at(copy, sigma); })));
+            return interval_array(value_or_raise(interruptible([copy, sigma] { return forces_at(copy, sigma); }),
+                                                 copy.packing.dimension));
         },
         py::arg("state"), py::arg("sigma2"),
         "(N, 2) ends of the intervals that hold the forces at the true vertex under the loaded stress `sigma2` instead "

@@ -102,7 +102,7 @@ class Run {
         reason_ = ending.reason;
         watcher.raise_again();
         if (ending.failure && ending.failure->kind != FailureKind::interrupted) {
-            raise({ending.failure->kind, ending.reason});
+            raise({ending.failure->kind, ending.reason}, plane); // the reason is text already
         }
         if (ending.status == RunStatus::failed) {
             throw Error(ErrorKind::bad_input, ending.reason);

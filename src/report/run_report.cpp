@@ -132,7 +132,8 @@ class Writer {
     std::vector<double> solve_forces(const State& state, const fs::path& path) {
         const auto inspection = inspect_vertex(state);
         if (!inspection.ok()) {
-            note(fmt::format("{}: the picture shows no forces: {}", path.string(), inspection.failure().message()));
+            note(fmt::format("{}: the picture shows no forces: {}", path.string(),
+                             inspection.failure().message(state.packing.dimension)));
             return {};
         }
         std::vector<double> forces = inspection.value().forces;

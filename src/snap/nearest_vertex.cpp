@@ -133,8 +133,9 @@ NearestVertex vertex_as_listed(const SoftState& soft, const std::string& words, 
     long steps = 0;
     constexpr double near = 0.1; // in smallest radii
     const auto failure = to_vertex(state.packing, state.contacts, steps, near * state.packing.min_radius());
-    out.contacts = fmt::format("{}, {}{}{}", soft.contacts.size(), words,
-                               failure ? "; as they stand in the file: " : "", failure ? failure->message() : "");
+    out.contacts =
+        fmt::format("{}, {}{}{}", soft.contacts.size(), words, failure ? "; as they stand in the file: " : "",
+                    failure ? failure->message(state.packing.dimension) : "");
     state.load = soft.load;
     state.load.refer_to(state.packing);
     if (state.packing.bars.empty()) { // the free motions of clumps are held in place

@@ -31,6 +31,7 @@ struct HeldMotion {
     std::vector<double> v; // on coordinates
     double size = 0;       // 2-norm
     double residual = 0;   // 2-norm of G v - e at the stored configuration
+    double terms = 0;      // 2-norm of the sums of the sizes of the terms of G v
 };
 
 /// \pre the row `slot` is of a held coordinate. Cost: a solve.
@@ -42,14 +43,16 @@ HeldMotion motion_of(const Vertex& vertex, std::size_t slot) {
     std::ranges::transform(on_dofs, on_dofs.begin(), std::negate());
     HeldMotion motion{vertex.structure.dofs().on_coordinates(on_dofs)};
     motion.size = euclidean_norm(on_dofs) * up;
-    double residual = 0;
+    double residual = 0, terms = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const auto rate = gap_gradient(vertex.packing, contacts[l]).rate(motion.v, l == slot ? -1.0 : 0.0);
         // clumps.md U8, a product of a row with velocities
         const double bound = std::abs(rate.value) + 24 * u * rate.terms;
         residual += bound * bound;
+        terms += rate.terms * rate.terms;
     }
     motion.residual = std::sqrt(residual) * up;
+    motion.terms = std::sqrt(terms) * up;
     return motion;
 }
 
@@ -149,8 +152,8 @@ class HeldForm {
             }
             sum.size += std::abs(share) * m.size * up;
             sum.residual +=
-                // clumps.md U4, a sum of motions
-                std::abs(share) * (m.residual + 16 * static_cast<double>(motions_.size()) * u * m.size) * up;
+                // the roundings of a sum of m motions (clumps.md, U4)
+                std::abs(share) * (m.residual + 2 * static_cast<double>(motions_.size()) * u * m.terms) * up;
         }
         const double fastest = Eigen::Map<const Eigen::ArrayXd>(sum.v.data(), std::ssize(sum.v)).abs().maxCoeff();
         motions_ = {std::move(sum)};

@@ -44,7 +44,7 @@ std::vector<std::vector<Interval>> pressed(State state, double radius) {
         for (std::size_t a = 1; a < state.packing.axes(); ++a) {
             const double length = state.packing.lattice(a, a);
             const bool high = (corner >> (a - 1) & 1U) != 0;
-            if (!(radius < length)) {
+            if (!(2 * radius < length)) { // C7
                 return {};
             }
             corners[corner][a] = high ? (1 + radius / x) / (1 - radius / length) * (1 + rounded)

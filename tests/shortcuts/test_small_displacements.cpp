@@ -115,8 +115,7 @@ BOOST_AUTO_TEST_CASE(a_frozen_geometry_keeps_its_linear_gaps_closed_and_the_load
 
 BOOST_AUTO_TEST_CASE(geometry_that_moves_follows_the_exact_path_for_some_arcs_and_then_drifts) {
     const State start = prepared(30, 1);
-    const Played exact = play(start, +1, 5);
-    BOOST_REQUIRE_MESSAGE(exact.outcome.completed, exact.why());
+    const Played exact = completed(play(start, +1, 5));
     const auto run = load_with_linear_gaps(start, LinearGeometry::moved, 5, 1000);
     BOOST_REQUIRE(!run.arcs.empty());
     // The first limit is that of the exact path, to rounding: no arc was approximated before it.

@@ -17,7 +17,7 @@ inline Agreement agree(const State& state, int direction, int equilibria, int se
     for (int seed = 1; seed <= seeds; ++seed) {
         const auto s = static_cast<std::uint64_t>(seed);
         const Course symbolic = follow_load(state, direction, equilibria, Ties::first_order, s);
-        const std::vector<double> rho = tie_direction(state.packing.radius, s);
+        const std::vector<double> rho = isostat::tie_direction(state.packing.radius, s);
         for (const long count : symbolic.counters.tally.perturbed) {
             sum.settled += static_cast<int>(count);
         }

@@ -7,15 +7,7 @@
 
 namespace crafted {
 
-using isostat::ArcRecord;
-using isostat::RunCounters;
-using isostat::RunOptions;
-using isostat::Segment;
-using isostat::SegmentOutcome;
-using isostat::State;
-using isostat::tie_direction;
-using isostat::TieDecision;
-using isostat::TiePolicy;
+using namespace isostat;
 
 /// How a test settles ties: not; by first-order terms alone; or by choices too.
 enum class Ties { stop, first_order, choose };
@@ -29,8 +21,7 @@ struct Course : Recorder {
     SegmentOutcome outcome;
     RunCounters counters;
     void on_arc(const ArcRecord& arc) override {
-        events.push_back(
-            fmt::format("{}:{}>{}", arc.equilibrium, isostat::to_string(arc.opened), isostat::to_string(arc.closed)));
+        events.push_back(fmt::format("{}:{}>{}", arc.equilibrium, to_string(arc.opened), to_string(arc.closed)));
         Recorder::on_arc(arc);
     }
     void follow(State state, const Segment& segment, const RunOptions& options) {
@@ -44,9 +35,7 @@ struct Course : Recorder {
         }
         return all;
     }
-    [[nodiscard]] std::string end() const {
-        return outcome.completed ? "completed" : isostat::to_string(outcome.failure->kind);
-    }
+    [[nodiscard]] std::string end() const { return outcome.completed ? "completed" : to_string(outcome.failure->kind); }
 };
 
 inline Course follow_load(const State& state, int direction, int equilibria, Ties ties, std::uint64_t seed = 1) {

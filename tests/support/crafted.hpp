@@ -165,6 +165,12 @@ inline Played play(State state, int direction, std::optional<int> equilibria, st
     return played;
 }
 
+/// The run, which must have come to its end.
+inline Played completed(Played played) {
+    BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
+    return played;
+}
+
 /// One arc alone, at this stress.
 inline void check_arc(const Played& played, const Contact& opened, const Contact& closed, double stress) {
     BOOST_TEST_REQUIRE(played.outcome.completed, played.why());

@@ -168,8 +168,7 @@ BOOST_AUTO_TEST_CASE(lattices_move_at_the_loads_at_which_their_rows_stretch_and_
         BOOST_TEST_INFO_SCOPE(columns << " x " << rows);
         const State patch = triangular(columns, rows);
         const Course course = follow_load(patch, +1, 200, Ties::choose);
-        BOOST_TEST(course.end() == "no limit",
-                   (course.outcome.failure ? course.outcome.failure->message() : std::string()));
+        BOOST_TEST(course.end() == "no limit", course.why());
         moves_at_known_loads(loads_of_motions(course), patch, columns, rows, 1e-11);
         const Packing& end = course.states.back().packing;
         BOOST_TEST(std::abs(end.length(0) - LatticeEnd(columns, rows).length) < 1e-11);
@@ -209,8 +208,7 @@ BOOST_AUTO_TEST_CASE(lattices_in_cells_stretch_from_a_ratio_of_3_on_until_the_ro
             State lattice = cells::loaded_lattice(columns, rows, tilts);
             lattice.load.reference_length = {lattice.packing.length(0), lattice.packing.length(1)};
             const Course course = follow_load(lattice, +1, 100, Ties::choose);
-            BOOST_TEST(course.end() == "no limit",
-                       (course.outcome.failure ? course.outcome.failure->message() : std::string()));
+            BOOST_TEST(course.end() == "no limit", course.why());
             const std::vector<double> loads = loads_of_motions(course);
             BOOST_TEST_REQUIRE(!loads.empty());
             BOOST_TEST(std::abs(loads[0] - 3) < 1e-11);

@@ -159,14 +159,13 @@ BOOST_AUTO_TEST_CASE(a_run_ends_with_the_objection_of_its_observer) {
     Objector objector(0);
     RunCounters counters;
     const SegmentOutcome outcome = run_segment(state, towards(-5), 0, {}, counters, objector);
-    BOOST_REQUIRE(outcome.failure.has_value());
-    BOOST_TEST((outcome.failure->kind == FailureKind::contradiction));
+    fails(outcome.failure, FailureKind::contradiction);
     BOOST_TEST(objector.equilibria.size() == 1U);
 }
 
 BOOST_AUTO_TEST_CASE(an_equilibrium_at_another_load_keeps_the_smallest_gap_of_its_configuration) {
-    const Played up = play(two_disks(1, 2, 1, 1), +1, {}, 2), down = play(up.state, -1, {}, 1.5);
-    BOOST_REQUIRE((up.outcome.completed && down.outcome.completed));
+    const Played up = completed(play(two_disks(1, 2, 1, 1), +1, {}, 2));
+    const Played down = completed(play(up.state, -1, {}, 1.5));
     const EquilibriumRecord& first = up.records.equilibria.front();
     for (const EquilibriumRecord& record : {up.records.equilibria.back(), down.records.equilibria.back()}) {
         BOOST_TEST(record.min_gap == first.min_gap);

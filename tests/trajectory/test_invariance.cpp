@@ -16,8 +16,7 @@ constexpr int equilibria = 12;
 
 struct Base {
     State start = prepared(60, 5);
-    Played played = play(start, +1, equilibria);
-    Base() { BOOST_REQUIRE_MESSAGE(played.outcome.completed, played.why()); }
+    Played played = completed(play(start, +1, equilibria));
 };
 
 } // namespace
@@ -25,8 +24,7 @@ struct Base {
 BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_the_predictor_step, Base) {
     BOOST_TEST(played.records.arcs.size() > 20);
     for (const double fraction : {0.4, 0.01}) {
-        RunOptions options{.step_fraction = fraction};
-        const Played other = play(start, +1, equilibria, {}, options);
+        const Played other = play(start, +1, equilibria, {}, {.step_fraction = fraction});
         check_same_sequence(played, other, events(other.records, same));
     }
 }
@@ -62,8 +60,7 @@ BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_noise_far_below_the_marg
         for (double& r : noisy.packing.radius) {
             r *= 1 + noise * (2.0 * static_cast<double>(random()) / 4294967295.0 - 1);
         }
-        RunOptions options{.certify = CertifyLevel::arcs};
-        const Played other = play(noisy, +1, equilibria, {}, options);
+        const Played other = play(noisy, +1, equilibria, {}, {.certify = CertifyLevel::arcs});
         check_same_sequence(played, other, events(other.records, same), 1e-8 + 100 * noise / sigma);
         BOOST_TEST(other.counters.arcs.undecided == 0, "noise " << noise);
     }
@@ -79,8 +76,7 @@ BOOST_FIXTURE_TEST_CASE(scaling_by_powers_of_two_changes_no_bit, Base) {
             scaled.load.stress[a] *= s;
             scaled.load.reference_length[a] *= l;
         }
-        const Played other = play(scaled, +1, equilibria);
-        BOOST_REQUIRE(other.outcome.completed);
+        const Played other = completed(play(scaled, +1, equilibria));
         BOOST_TEST_REQUIRE(other.records.equilibria.size() == played.records.equilibria.size());
         for (std::size_t k = 0; k < played.records.equilibria.size(); ++k) {
             BOOST_TEST(other.records.equilibria[k].stress == s * played.records.equilibria[k].stress);
@@ -99,8 +95,7 @@ BOOST_FIXTURE_TEST_CASE(the_same_start_gives_the_same_bits, Base) {
 }
 
 BOOST_FIXTURE_TEST_CASE(a_run_in_two_parts_gives_the_same_bits_as_in_one, Base) {
-    Played first = play(start, +1, equilibria / 2);
-    BOOST_REQUIRE(first.outcome.completed);
+    Played first = completed(play(start, +1, equilibria / 2));
     RunOptions options{.max_strain = 1e9};
     const auto outcome =
         run_segment(first.state, towards(equilibria - equilibria / 2), 0, options, first.counters, first.records);
@@ -117,9 +112,7 @@ BOOST_FIXTURE_TEST_CASE(rearrangements_of_one_arc_are_the_same_under_every_openi
             continue;
         }
         for (const OpeningRule rule : {OpeningRule::random, OpeningRule::least_negative, OpeningRule::least_index}) {
-            RunOptions options{.rule = rule};
-            const Played other = play(played.records.states[k - 1], +1, 1, {}, options);
-            BOOST_REQUIRE_MESSAGE(other.outcome.completed, other.why());
+            const Played other = completed(play(played.records.states[k - 1], +1, 1, {}, {.rule = rule}));
             BOOST_TEST((other.state.contacts == played.records.states[k].contacts));
             ++compared;
         }
@@ -131,8 +124,7 @@ BOOST_AUTO_TEST_CASE(every_opening_rule_reaches_equilibria_whose_checks_hold) {
     const State start = prepared(40, 2);
     for (const OpeningRule rule :
          {OpeningRule::most_negative, OpeningRule::random, OpeningRule::least_negative, OpeningRule::least_index}) {
-        RunOptions options{.rule = rule};
-        const Played run = play(start, +1, 6, {}, options);
+        const Played run = play(start, +1, 6, {}, {.rule = rule});
         // The weakest traction may be that of a disk that carries nothing but what its turn was rounded by: a tie,
         // named.
         BOOST_TEST((run.outcome.completed ||
@@ -155,8 +147,7 @@ BOOST_AUTO_TEST_CASE(every_opening_rule_reaches_equilibria_whose_checks_hold) {
 }
 
 BOOST_AUTO_TEST_CASE(dead_loads_make_the_potential_decrease_along_every_arc) {
-    const Played run = play(prepared(80, 4), +1, 10);
-    BOOST_REQUIRE_MESSAGE(run.outcome.completed, run.why());
+    const Played run = completed(play(prepared(80, 4), +1, 10));
     for (const auto& arc : run.records.arcs) {
         BOOST_TEST((arc.work > 0 || arc.kind == ArcKind::rattler),
                    "arc " << arc.step << " " << to_string(arc.kind) << " work " << arc.work);
@@ -197,8 +188,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_have_a_strict_minimum_of_a_potential_of_their
 
 BOOST_AUTO_TEST_CASE(a_cap_on_arcs_ends_the_run_with_the_last_equilibrium) {
     const Played run = play(prepared(60, 5), +1, 12, {}, {.max_arcs = 1});
-    BOOST_REQUIRE(run.outcome.failure);
-    BOOST_TEST((run.outcome.failure->kind == FailureKind::cap_reached));
+    fails(run.outcome.failure, FailureKind::cap_reached);
     const auto inspection = required(inspect_vertex(run.state));
     BOOST_TEST(inspection.equilibrium, inspection.remark);
 }
@@ -206,7 +196,6 @@ BOOST_AUTO_TEST_CASE(a_cap_on_arcs_ends_the_run_with_the_last_equilibrium) {
 BOOST_AUTO_TEST_CASE(a_stop_request_ends_the_run_with_the_last_equilibrium) {
     const std::atomic<bool> stop{true};
     const Played run = play(prepared(20, 1), +1, 12, {}, {.stop = &stop});
-    BOOST_REQUIRE(run.outcome.failure);
-    BOOST_TEST((run.outcome.failure->kind == FailureKind::interrupted));
+    fails(run.outcome.failure, FailureKind::interrupted);
     BOOST_TEST(run.records.equilibria.size() == 1U);
 }

@@ -44,8 +44,7 @@ void same_events(const std::string& disks, const std::vector<const Played*>& par
 void compare(const std::string& disks) {
     const std::vector<std::string> rows = recorded("sequence" + disks + ".txt");
     BOOST_REQUIRE(rows.size() > 10);
-    const Played up = play(sample(disks), +1, static_cast<int>(rows.size()) - 1);
-    BOOST_REQUIRE_MESSAGE(up.outcome.completed, up.why());
+    const Played up = completed(play(sample(disks), +1, static_cast<int>(rows.size()) - 1));
     BOOST_REQUIRE_EQUAL(up.records.equilibria.size(), rows.size());
     for (std::size_t k = 0; k < rows.size(); ++k) {
         BOOST_TEST_INFO_SCOPE("equilibrium " << k);
@@ -62,8 +61,7 @@ void compare(const std::string& disks) {
         BOOST_TEST(e.arcs == static_cast<int>(row[6]));
         BOOST_TEST((e.verdict == Verdict::proved));
     }
-    const Played down = play(up.state, -1, {}, 1.0);
-    BOOST_REQUIRE_MESSAGE(down.outcome.completed, down.why());
+    const Played down = completed(play(up.state, -1, {}, 1.0));
     same_events(disks, {&up, &down});
     const double peak = up.records.equilibria.back().strain[1];
     const EquilibriumRecord& left = down.records.equilibria.back();
@@ -87,8 +85,7 @@ BOOST_AUTO_TEST_CASE(the_sample_of_1936_disks_is_an_equilibrium_and_makes_ten_mo
     const auto inspection = required(inspect_vertex(start));
     BOOST_TEST(inspection.equilibrium, inspection.remark);
     BOOST_TEST(inspection.record.dof_count == 2 * 1936 + 2);
-    const Played run = play(start, +1, 10);
-    BOOST_REQUIRE_MESSAGE(run.outcome.completed, run.why());
+    const Played run = completed(play(start, +1, 10));
     for (const auto& e : run.records.equilibria) {
         BOOST_TEST((e.verdict == Verdict::proved));
         BOOST_TEST(e.backbone == 2 * (1936 - e.rattlers) + 2);

@@ -96,8 +96,7 @@ BOOST_AUTO_TEST_CASE(intervals_at_constant_mean_stress_are_those_of_a_dense_solu
         State state = test::state_of_spheres(test::read_spheres(name));
         state.load.follow({-1, -1, 2});
         snap_to_grid(state.packing);
-        const Played played = ::crafted::play(state, +1, 2);
-        BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
+        const Played played = ::crafted::completed(::crafted::play(state, +1, 2));
         for (std::size_t k : {std::size_t{0}, played.records.states.size() - 1}) {
             const EquilibriumRecord& record = played.records.equilibria[k];
             const oracle::TruthIn<long double> dense(played.records.states[k], oracle::At::stored);
@@ -112,8 +111,8 @@ BOOST_AUTO_TEST_CASE(intervals_at_constant_mean_stress_are_those_of_a_dense_solu
 }
 
 BOOST_AUTO_TEST_CASE(a_sphere_of_a_tetrahedron_leaves_with_its_four_contacts) {
-    const Played start = ::crafted::play(start_of_spheres("closed_tetra", {1, 1, 1}), +1, {}, 1.5);
-    BOOST_TEST_REQUIRE(start.outcome.completed, start.why());
+    const Played start =
+        ::crafted::completed(::crafted::play(start_of_spheres("closed_tetra", {1, 1, 1}), +1, {}, 1.5));
     const EquilibriumRecord& record = start.records.equilibria.front();
     BOOST_TEST(record.stress_high == 2.0, boost::test_tools::tolerance(1e-12));
     BOOST_TEST(record.stress_low == 0.4, boost::test_tools::tolerance(1e-12));
@@ -141,8 +140,7 @@ BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program_are_followed) {
             unit = std::stod(sequence["unit_force"].get<std::string>());
         }
         snap_to_grid(state.packing);
-        const Played played = ::crafted::play(state, sequence["load"] == "down" ? -1 : +1, count);
-        BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
+        const Played played = ::crafted::completed(::crafted::play(state, sequence["load"] == "down" ? -1 : +1, count));
         std::size_t next = 0;
         for (const nlohmann::json& equilibrium : sequence["equilibria"]) {
             const double ratio = std::stod(equilibrium["ratio"].get<std::string>());
@@ -175,8 +173,7 @@ BOOST_AUTO_TEST_CASE(every_arc_of_spheres_is_certified_with_its_power_and_none_i
         snap_to_grid(state.packing);
         const RunOptions options{.max_strain = 1e9, .certify = CertifyLevel::arcs};
         const Played plain = ::crafted::play(state, +1, equilibria, {}, {.max_strain = 1e9});
-        const Played proved = ::crafted::play(state, +1, equilibria, {}, options);
-        BOOST_TEST_REQUIRE(proved.outcome.completed, proved.why());
+        const Played proved = ::crafted::completed(::crafted::play(state, +1, equilibria, {}, options));
         BOOST_TEST((plain.state.packing.q == proved.state.packing.q));
         BOOST_TEST_REQUIRE(plain.records.arcs.size() == proved.records.arcs.size());
         for (std::size_t k = 0; k < proved.records.arcs.size(); ++k) {

@@ -21,8 +21,8 @@ State hyperstatic_three() {
 BOOST_AUTO_TEST_CASE(a_tie_in_a_cell_stops_the_run_and_names_the_contacts) {
     const Course course = follow_load(cells::mirror_pairs(), +1, 1, Ties::stop);
     BOOST_TEST(course.end() == "tie");
-    BOOST_TEST(mentions(course, "0-1(0,1)"), course.outcome.failure->message());
-    BOOST_TEST(mentions(course, "3-4"), course.outcome.failure->message());
+    BOOST_TEST(mentions(course, "0-1(0,1)"), course.why());
+    BOOST_TEST(mentions(course, "3-4"), course.why());
     BOOST_TEST(mentions(course, "4096 bits"));
 }
 
@@ -58,7 +58,7 @@ BOOST_AUTO_TEST_CASE(lattices_in_cells_are_followed_where_ties_are_chosen) {
             BOOST_TEST(static_cast<int>(course.states[0].contacts.size()) == freedoms);
             BOOST_TEST(course.states[0].perturbation->open.size() ==
                        start.contacts.size() - course.states[0].contacts.size());
-            BOOST_TEST(course.end() == "cap reached", course.outcome.failure->message());
+            BOOST_TEST(course.end() == "cap reached", course.why());
             BOOST_TEST_REQUIRE(course.arcs.size() >= 1U);
         }
     }

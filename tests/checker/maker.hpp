@@ -10,8 +10,6 @@
 namespace maker {
 
 using isostat::Certificate;
-using isostat::Contact;
-using isostat::ContactKind;
 using isostat::Interval;
 using isostat::State;
 using Real = long double;

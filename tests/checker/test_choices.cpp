@@ -62,16 +62,11 @@ struct ForgedExchange {
 } // namespace
 
 BOOST_FIXTURE_TEST_CASE(a_forged_choice_is_refused, scratch::InFolder) {
-    State state = crafted::mirror_forces();
-    state.perturbation.emplace();
-    state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
-    play(state, -1, folder);
+    play(crafted::alike(crafted::mirror_forces()), -1, folder);
     const RunVerification run = played::proved(folder);
     BOOST_TEST(run.choices_checked > 0);
     const std::string events = scratch::read(folder / "events.jsonl");
     const bool one = events.find("\"opened\":\"1-bottom\"") != std::string::npos;
-    const std::string chosen = one ? "1-bottom" : "2-bottom";
-    const std::string other = one ? "2-bottom" : "1-bottom";
     const auto refuted = [&](const std::string& from, const std::string& to, const std::string& said) {
         BOOST_TEST_INFO_SCOPE(from << " -> " << to);
         played::refuted(altered(folder, "events.jsonl", from, to), said);
@@ -197,13 +192,9 @@ BOOST_FIXTURE_TEST_CASE(rows_that_change_their_lists_where_they_are_and_spread_a
 }
 
 BOOST_FIXTURE_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused, scratch::InFolder) {
-    State state = crafted::mirror_gaps();
-    state.perturbation.emplace();
-    state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
-    play(state, 1, folder);
+    play(crafted::alike(crafted::mirror_gaps()), 1, folder);
     const RunVerification run = played::proved(folder);
     BOOST_TEST(run.choices_checked > 0);
-    const std::string header = scratch::read(folder / "run.json");
     const RunVerification stopped = altered(folder, "run.json", "choose", "stop");
     BOOST_TEST((stopped.verdict == Verdict::refuted));
     const std::string capped = "choose\",\"max_choices\":";
@@ -296,9 +287,7 @@ BOOST_AUTO_TEST_CASE(a_start_at_which_touching_pairs_overlap_at_first_order_is_r
 
 BOOST_AUTO_TEST_CASE(what_is_chosen_to_open_at_a_start_is_replayed_and_a_forged_choice_refused) {
     const scratch::Folder folder;
-    State state = crafted::mirror_forces();
-    state.perturbation.emplace();
-    state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
+    State state = crafted::alike(crafted::mirror_forces());
     state.load.stress[1] = 0.25; // both have left the bottom at 0.5
     play(state, 1, folder, 1, true);
     BOOST_TEST(proved_from_start(folder).choices_checked == 1);

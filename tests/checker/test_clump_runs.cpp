@@ -29,8 +29,7 @@ State at_the_start(State state) {
 /// From a start as scenes have it; the run is proved.
 RunVerification proved_run(const State& start, const std::vector<Segment>& segments, const RunOptions& options,
                            const std::filesystem::path& folder) {
-    const SegmentOutcome outcome = played::into(folder, at_the_start(start), segments, options, true);
-    BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message(3) : ""));
+    played::completely(folder, at_the_start(start), segments, options, true);
     return played::proved(folder);
 }
 
@@ -58,9 +57,7 @@ void play_spheres(const SphereRun& run, const std::filesystem::path& folder,
         change(start);
     }
     snap_to_grid(start.packing);
-    const SegmentOutcome outcome =
-        played::into(folder, start, {towards(run.equilibria)}, {.max_strain = 1e9, .certify = level});
-    BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message(3) : ""));
+    played::completely(folder, start, {towards(run.equilibria)}, {.max_strain = 1e9, .certify = level});
 }
 
 /// Each alters one record of an arc.
@@ -111,8 +108,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_of_dimers_run_and_are_proved) {
 BOOST_FIXTURE_TEST_CASE(a_run_of_dimers_is_proved_up_to_the_column_that_supports_every_load, scratch::InFolder) {
     const SegmentOutcome outcome = played::into(folder / "run", at_the_start(test::clumps("dimer_20_2")), {towards(30)},
                                                 {.max_strain = 1e9}, true);
-    BOOST_TEST_REQUIRE(outcome.failure.has_value());
-    BOOST_TEST((outcome.failure->kind == FailureKind::no_limit), outcome.failure->message());
+    fails(outcome.failure, FailureKind::no_limit);
     const RunVerification run = played::proved(folder / "run");
     BOOST_TEST(run.equilibria_proved > 10);
 }
@@ -121,13 +117,9 @@ BOOST_FIXTURE_TEST_CASE(a_run_of_dimers_is_proved_up_to_the_column_that_supports
 /// and of the members of a dimer that lies level (S7). The checker finds the same order.
 BOOST_AUTO_TEST_CASE(runs_are_proved_where_two_contacts_of_a_body_bear_one_force) {
     for (const auto& [name, equilibria] : {std::pair("dimer2_20_8", 1), std::pair("dimer_20_5", 7)}) {
-        BOOST_TEST_CONTEXT(name) {
-            const scratch::Folder folder;
-            const SegmentOutcome outcome = played::into(folder / "run", at_the_start(test::clumps(name)),
-                                                        {towards(equilibria)}, {.max_strain = 1e9}, true);
-            BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
-            (void)played::proved(folder / "run");
-        }
+        BOOST_TEST_INFO_SCOPE(name);
+        const scratch::Folder folder;
+        proved_run(test::clumps(name), {towards(equilibria)}, {.max_strain = 1e9}, folder / "run");
     }
 }
 
@@ -183,8 +175,7 @@ BOOST_AUTO_TEST_CASE(paths_in_the_space_of_stresses_are_proved_and_others_refute
         }
         start.load.follow({-1, -1, 2});
         snap_to_grid(start.packing);
-        const SegmentOutcome outcome = played::into(folder, start, {towards(2)}, {.max_strain = 1e9});
-        BOOST_TEST_REQUIRE(outcome.completed, (outcome.failure ? outcome.failure->message(3) : ""));
+        played::completely(folder, start, {towards(2)}, {.max_strain = 1e9});
         (void)played::proved(folder);
         const std::string rows = scratch::read(folder / "equilibria.csv");
         BOOST_TEST((rows.find("segment,t,ratio,p,q,eps1,eps2,eps3,") != std::string::npos), rows.substr(0, 100));

@@ -32,6 +32,29 @@ Certificate with_a_minimum(Certificate certificate, double away, double curvatur
     return certificate;
 }
 
+/// What the checker says of such a claim about a state.
+Verdict on_a_minimum_of(const State& state, double curvature = 1e-3) {
+    return read_and_verified(with_a_minimum(of_clumps(state), 1, curvature)).verdict;
+}
+
+/// The minimum that is certified is proved again.
+Verification verified_minimum(const Certificate& certificate) {
+    BOOST_REQUIRE(certificate.claims.minimum.has_value());
+    const Verification verification = read_and_verified(certificate);
+    BOOST_TEST((verification.verdict == Verdict::proved), verification.checks.back().detail);
+    return verification;
+}
+
+using NamedForgeries = std::vector<std::pair<const char*, std::function<void(Certificate&)>>>;
+
+void none_verifies(const Certificate& right, const NamedForgeries& forgeries) {
+    for (const auto& [what, forge] : forgeries) {
+        Certificate forged = right;
+        forge(forged);
+        BOOST_TEST((verify(forged).verdict != Verdict::proved), what);
+    }
+}
+
 Certificate with_a_vague_form(const Certificate& certificate) {
     return with_a_minimum(certificate, certificate.claims.minimum->away, certificate.claims.minimum->curvature);
 }
@@ -169,10 +192,8 @@ BOOST_AUTO_TEST_CASE(a_minimum_along_mechanisms_is_certified_and_verified) {
     for (const State& state : {disk_in_a_corner(), disk_in_a_corner(0x1p-30), two_disks_in_a_corner(),
                                sphere_in_a_corner(), pendulums(-5, -8), flat_beside_steep()}) {
         const Certificate certificate = of_clumps(state);
-        BOOST_REQUIRE(certificate.claims.minimum.has_value());
         BOOST_TEST(!certificate.claims.counting.has_value());
-        const Verification verification = read_and_verified(certificate);
-        BOOST_TEST((verification.verdict == Verdict::proved));
+        const Verification verification = verified_minimum(certificate);
         BOOST_TEST((verdict_on(verification, "minimum") == Verdict::proved), verification.checks.back().detail);
         const auto& numbers = verification.checks.back().numbers;
         BOOST_REQUIRE(numbers.size() == 2U);
@@ -193,10 +214,7 @@ BOOST_AUTO_TEST_CASE(minima_in_cells_and_under_true_stresses_are_verified_to_the
         {turned_rectangle(1, 1), 8320.0 / (68 * 68)}}; // a flank moves by 68/13 per radian
     for (const auto& [state, curvature] : all) {
         const Certificate certificate = of_clumps(state);
-        BOOST_REQUIRE(certificate.claims.minimum.has_value());
-        const Verification verification = read_and_verified(certificate);
-        BOOST_TEST((verification.verdict == Verdict::proved), verification.checks.back().detail);
-        const double found = verification.checks.back().numbers.at(1).second;
+        const double found = verified_minimum(certificate).checks.back().numbers.at(1).second;
         BOOST_TEST(found == curvature, boost::test_tools::tolerance(1e-6));
         Certificate forged = certificate;
         forged.claims.minimum->curvature = curvature * (1 + 1e-6);
@@ -207,9 +225,8 @@ BOOST_AUTO_TEST_CASE(minima_in_cells_and_under_true_stresses_are_verified_to_the
     leaning.state.packing.cell.keep_shape(); // the size of the cell would be another potential
     BOOST_TEST((verify(leaning).verdict == Verdict::undecided));
     for (const State& state : {dimer_in_a_cell(1), dimer_in_a_cell(1.42), spheres_in_a_cell(1)}) {
-        const Certificate forged = of_clumps(state);
-        BOOST_TEST(!forged.claims.minimum.has_value());
-        BOOST_TEST((read_and_verified(with_a_minimum(forged, 1, 1e-6)).verdict != Verdict::proved));
+        BOOST_TEST(!of_clumps(state).claims.minimum.has_value());
+        BOOST_TEST((on_a_minimum_of(state, 1e-6) != Verdict::proved));
     }
 }
 
@@ -243,17 +260,14 @@ BOOST_AUTO_TEST_CASE(what_is_level_where_it_is_held_is_no_free_motion_for_the_ch
 BOOST_AUTO_TEST_CASE(minima_of_ovals_are_certified_and_verified) {
     for (const State& state :
          {clumps("oval_1.1_16_1"), clumps("oval_1.4_16_1"), clumps("oval_1.4_16_2"), oval_in_a_box(1, 1)}) {
-        const Certificate certificate = of_clumps(state);
-        BOOST_REQUIRE(certificate.claims.minimum.has_value());
-        const Verification verification = read_and_verified(certificate);
-        BOOST_TEST((verification.verdict == Verdict::proved), verification.checks.back().detail);
+        verified_minimum(of_clumps(state));
     }
 }
 
 BOOST_AUTO_TEST_CASE(forged_minima_of_ovals_do_not_verify) {
     const Certificate right = with_a_vague_form(of_clumps(oval_in_a_box(1, 1)));
     BOOST_TEST((verify(right).verdict == Verdict::proved));
-    const std::vector<std::pair<const char*, std::function<void(Certificate&)>>> forgeries{
+    const NamedForgeries forgeries{
         {"no arcs: circles that overlap the walls", [](Certificate& c) { c.state.packing.arcs.clear(); }},
         {"clockwise",
          [](Certificate& c) {
@@ -273,19 +287,13 @@ BOOST_AUTO_TEST_CASE(forged_minima_of_ovals_do_not_verify) {
         {"a fixed disk beside it", [](Certificate& c) {
              c.state.packing.fixed = {0, 1, 0, 0};
          }}};
-    for (const auto& [what, forge] : forgeries) {
-        Certificate forged = right;
-        forge(forged);
-        BOOST_TEST((verify(forged).verdict != Verdict::proved), what);
-    }
+    none_verifies(right, forgeries);
     // What the circle of a flank touches beyond its arc.
-    const Certificate beyond = with_a_minimum(of_clumps(circle_of_an_oval_in_a_corner()), 1, 1e-3);
-    BOOST_TEST((verify(beyond).verdict != Verdict::proved));
+    BOOST_TEST((on_a_minimum_of(circle_of_an_oval_in_a_corner()) != Verdict::proved));
     // At a joint, and a hair beside it on either side.
     const double joint = std::atan2(4, 3);
     for (const double off : {0.0, 0x1p-50, -0x1p-50}) {
-        const Certificate there = with_a_minimum(of_clumps(oval_in_a_box(1, 1, joint + off)), 1, 1e-3);
-        BOOST_TEST((verify(there).verdict != Verdict::proved));
+        BOOST_TEST((on_a_minimum_of(oval_in_a_box(1, 1, joint + off)) != Verdict::proved));
     }
 }
 
@@ -330,7 +338,7 @@ BOOST_AUTO_TEST_CASE(an_oval_above_a_wall_that_a_joint_points_to_verifies) {
 BOOST_AUTO_TEST_CASE(forged_minima_do_not_verify) {
     const Certificate right = with_a_vague_form(of_clumps(disk_in_a_corner(0x1p-20)));
     BOOST_TEST((read_and_verified(right).verdict == Verdict::proved));
-    const std::vector<std::pair<const char*, std::function<void(Certificate&)>>> forgeries{
+    const NamedForgeries forgeries{
         {"nearer than it is", [](Certificate& c) { c.claims.minimum->away = 0x1p-22; }},
         {"steeper than it is", [](Certificate& c) { c.claims.minimum->curvature = 12.6; }},
         {"turned by half a radian", [](Certificate& c) { c.state.packing.q[2] = 1.3; }},
@@ -347,29 +355,21 @@ BOOST_AUTO_TEST_CASE(forged_minima_do_not_verify) {
         {"true stresses", [](Certificate& c) { c.state.load.kind = LoadKind::true_stress; }},
         {"a contact left out", [](Certificate& c) { c.state.contacts.erase(c.state.contacts.begin()); }},
         {"a wrong count", [](Certificate& c) { c.claims.counting = CountingClaim{3, 3, 3, 0, 0, Rung::exact}; }}};
-    for (const auto& [what, forge] : forgeries) {
-        Certificate forged = right;
-        forge(forged);
-        BOOST_TEST((verify(forged).verdict != Verdict::proved), what);
-    }
+    none_verifies(right, forgeries);
     // On its head: where the prover found a minimum below.
-    const Certificate turned = with_a_minimum(of_clumps(disk_in_a_corner(std::acos(-1))), 1, 1e-3);
-    BOOST_TEST((read_and_verified(turned).verdict != Verdict::proved));
+    BOOST_TEST((on_a_minimum_of(disk_in_a_corner(std::acos(-1))) != Verdict::proved));
     // What ends the way to it is further than the stored place.
-    const Certificate lands = with_a_minimum(of_clumps(disk_that_lands()), 1, 1e-3);
-    BOOST_TEST((read_and_verified(lands).verdict == Verdict::undecided));
+    BOOST_TEST((on_a_minimum_of(disk_that_lands()) == Verdict::undecided));
     // Too far from where it would hang; where the left wall would have to pull.
     for (const double angle : {0.5, 0x1p-9}) {
-        const Certificate far = with_a_minimum(of_clumps(disk_in_a_corner(angle)), 1, 1e-3);
-        BOOST_TEST((read_and_verified(far).verdict == Verdict::undecided));
+        BOOST_TEST((on_a_minimum_of(disk_in_a_corner(angle)) == Verdict::undecided));
     }
     Certificate pulled = with_a_vague_form(of_clumps(disk_in_a_corner()));
     pulled.state.packing.q[2] = 1.375;
     pulled.state.load.disk_force[2] = 3;
     BOOST_TEST((verify(pulled).verdict == Verdict::undecided));
     // An isostatic state has no mechanism along which there could be one.
-    const Certificate isostatic = with_a_minimum(of_clumps(lying_dimer(12, 12)), 1, 1e-3);
-    BOOST_TEST((verify(isostatic).verdict == Verdict::undecided));
+    BOOST_TEST((on_a_minimum_of(lying_dimer(12, 12)) == Verdict::undecided));
     // Two that hang above each other touch: no way is left.
     State near = disk_in_a_corner();
     near.packing.walls.upper[0] = WallKind::fixed;
@@ -377,8 +377,7 @@ BOOST_AUTO_TEST_CASE(forged_minima_do_not_verify) {
     BOOST_TEST((read_and_verified(of_clumps(near)).verdict == Verdict::proved));
     near.packing.length(0) = 2;
     BOOST_TEST(!of_clumps(near).claims.minimum.has_value());
-    const Certificate touching = with_a_minimum(of_clumps(near), 1, 1e-3);
-    BOOST_TEST((verify(touching).verdict != Verdict::proved));
+    BOOST_TEST((on_a_minimum_of(near) != Verdict::proved));
 }
 
 /// Of a sphere that hangs: two coordinates, and an entry between them.

@@ -39,10 +39,7 @@ void play(const State& start, const std::vector<Segment>& segments, const fs::pa
 
 /// Two forces that vanish together, which nothing but the infinitesimal loads orders.
 State equal_forces() {
-    State state = crafted::mirror_forces();
-    state.perturbation.emplace();
-    state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
-    return state;
+    return crafted::alike(crafted::mirror_forces());
 }
 
 /// Disk 0 swings around the fixed disk 2 between fixed disks; `last` is where the fifth disk stands: in the way, or

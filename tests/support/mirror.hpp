@@ -5,6 +5,12 @@
 
 namespace crafted {
 
+/// The same rho for all disks: nothing of first order in the radii tells mirror images apart.
+inline State alike(State state) {
+    state.perturbation.emplace().rho.assign(state.packing.radius.size(), 0.5);
+    return state;
+}
+
 /// Two disks of radius 3 on a fixed one of radius 2, pushed together by 12, under the top wall; weights 1. Loading
 /// parts them at sigma2 = 1.5, and they reach the bottom together: a tie of two gaps. Unloaded, both lose the top wall
 /// together at sigma2 = 0.

@@ -61,6 +61,13 @@ inline isostat::SegmentOutcome into(const std::filesystem::path& folder, isostat
     return outcome;
 }
 
+/// The same of segments that must be completed.
+inline void completely(const std::filesystem::path& folder, const isostat::State& state,
+                       const std::vector<Segment>& segments, const RunOptions& options = {}, bool with_start = false) {
+    const isostat::SegmentOutcome outcome = into(folder, state, segments, options, with_start);
+    BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message(3) : ""));
+}
+
 inline void without_objection(const RunVerification& run) {
     BOOST_TEST(run.wrong == "");
     BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));

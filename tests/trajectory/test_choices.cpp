@@ -12,13 +12,6 @@ using namespace ::crafted;
 
 namespace {
 
-/// The same rho for all disks.
-State alike(State state) {
-    state.perturbation.emplace();
-    state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
-    return state;
-}
-
 /// The infinitesimal loads of the mirror image, in which disks 1 and 2 change places.
 State mirror_image(State state) {
     std::vector<double>& g = state.load.infinitesimal;

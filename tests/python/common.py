@@ -35,13 +35,7 @@ def two_disks(stress=(1.0, 1.0), **options):
     x = 1 + 2 * np.sqrt(2)
     contacts = [(0, 1), (0, "left"), (0, "bottom"), (1, "bottom"), (1, "right"), (1, "top")]
     return isostat.State.from_arrays(
-        [[1, 1], [x, 2]],
-        [1, 2],
-        [x + 2, 4],
-        contacts,
-        stress=stress,
-        reference_length=[1, 1],
-        **options
+        [[1, 1], [x, 2]], [1, 2], [x + 2, 4], contacts, stress=stress, reference_length=[1, 1], **options
     )
 
 

@@ -13,13 +13,9 @@ data = project / "tests/data/clumps"
 
 def lying(f1=12.0, f2=12.0):
     return isostat.State.from_arrays(
-        [[1, 1], [2.5, 0.375]],
-        [1, 0.375],
-        [2.875, 2],
+        [[1, 1], [2.5, 0.375]], [1, 0.375], [2.875, 2],
         [(0, "left"), (0, "bottom"), (1, "bottom"), (1, "right"), (0, "top")],
-        stress=[f1, f2],
-        reference_length=[1, 1],
-        bars=[(0, 1, 1.625)],
+        stress=[f1, f2], reference_length=[1, 1], bars=[(0, 1, 1.625)],
     )
 
 
@@ -58,12 +54,8 @@ class Bodies(Folder):
     def test_what_takes_single_grains_says_so(self):
         state = lying()
         for call in (
-            lambda: isostat.snap(state),
-            lambda: isostat.jamming(state),
-            lambda: isostat.stiffness_matrix(state, 1.0),
-            lambda: isostat.unjamming_motion(state),
-            lambda: state.rattlers,
-            lambda: pickle.dumps(state.packing),
+            lambda: isostat.snap(state), lambda: isostat.jamming(state), lambda: isostat.stiffness_matrix(state, 1.0),
+            lambda: isostat.unjamming_motion(state), lambda: state.rattlers, lambda: pickle.dumps(state.packing),
         ):
             with self.assertRaisesRegex(isostat.BadInput, "clumps"):
                 call()
@@ -107,13 +99,9 @@ class Bodies(Folder):
 
     def test_an_oval_between_four_walls(self):
         state = isostat.State.from_arrays(
-            [[7, 2], [4, -2], [1, 2], [4, 6]],
-            [1, 6, 1, 6],
-            [8, 4],
-            [(2, "left"), (0, "right"), (3, "bottom"), (1, "top")],
-            reference_length=[1, 1],
-            bars=[(0, 1, 5), (0, 2, 6), (0, 3, 5), (1, 2, 5), (2, 3, 5)],
-            arcs=[(0, 1, 2, 3)],
+            [[7, 2], [4, -2], [1, 2], [4, 6]], [1, 6, 1, 6], [8, 4],
+            [(2, "left"), (0, "right"), (3, "bottom"), (1, "top")], reference_length=[1, 1],
+            bars=[(0, 1, 5), (0, 2, 6), (0, 3, 5), (1, 2, 5), (2, 3, 5)], arcs=[(0, 1, 2, 3)],
         )
         self.assertEqual(state.arcs, [(0, 1, 2, 3)])
         self.assertEqual(isostat.State.parse(state.text()).arcs, state.arcs)

@@ -56,6 +56,22 @@ class Written:
         step = 1e-5
         return np.array([(self.gaps(step * unit) - self.gaps(-step * unit)) / (2 * step) for unit in np.eye(3 * len(self.bodies) + len(self.length))]).T
 
+    def balanced(self, test):
+        """Its derivatives, by which positive forces of the contacts balance equal loads on both lengths."""
+        rows, unit = self.derivatives(), np.eye(3 * len(self.bodies) + len(self.length))
+        load = unit[3 * len(self.bodies)] + unit[3 * len(self.bodies) + 1]
+        force = np.linalg.lstsq(rows.T, load, rcond=None)[0]
+        test.assertLess(abs(rows.T @ force - load).max(), 1e-8)
+        test.assertGreater(force.min(), 1e-6)
+        return rows
+
+    def bearing(self):
+        """Of each body that a contact holds: the disks that it holds."""
+        bear = collections.defaultdict(set)
+        for disk in (i for contact in self.contacts for i in contact[:2] if not isinstance(i, str)):
+            bear[self.body[disk]].add(disk)
+        return bear
+
     def others(self):
         pairs = ((i, j) for i, j in itertools.combinations(range(len(self.disks)), 2) if self.body[i] != self.body[j])
         if self.cell:
@@ -83,14 +99,8 @@ class Clumps(unittest.TestCase):
                 self.assertLess(abs(math.dist(state.disks[i, :2], state.disks[j, :2]) - distance), 2e-14)
             self.assertLess(abs(state.gaps(np.zeros(38))).max(), 1e-14)
             self.assertGreater(min(state.others()), 1e-4)
-            rows = state.derivatives()
-            force = np.linalg.lstsq(rows.T, np.eye(38)[36] + np.eye(38)[37], rcond=None)[0]
-            self.assertLess(abs(rows.T @ force - np.eye(38)[36] - np.eye(38)[37]).max(), 1e-8)
-            self.assertGreater(force.min(), 1e-6)
-            rank = int((np.linalg.svd(rows)[1] > 1e-7).sum())
-            bear = collections.defaultdict(set)
-            for disk in (i for contact in state.contacts for i in contact if not isinstance(i, str)):
-                bear[state.body[disk]].add(disk)
+            rank = int((np.linalg.svd(state.balanced(self))[1] > 1e-7).sum())
+            bear = state.bearing()
             self.assertEqual(len(state.contacts), rank)
             self.assertEqual(3 * len(bear) + 2 - rank, sum(len(disks) == 1 for disks in bear.values()))
 
@@ -100,14 +110,8 @@ class Clumps(unittest.TestCase):
             self.assertTrue(any(len(contact) == 3 for contact in state.contacts))
             self.assertLess(abs(state.gaps(np.zeros(33))).max(), 2e-14)
             self.assertGreater(min(state.others()), 1e-5)
-            rows, load = state.derivatives(), np.eye(33)[30] + np.eye(33)[31]
-            force = np.linalg.lstsq(rows.T, load, rcond=None)[0]
-            self.assertLess(abs(rows.T @ force - load).max(), 1e-8)
-            self.assertGreater(force.min(), 1e-6)
-            self.assertEqual(len(state.contacts), int((np.linalg.svd(rows)[1] > 1e-7).sum()))
-            bear = collections.defaultdict(set)
-            for disk in (i for contact in state.contacts for i in contact[:2]):
-                bear[state.body[disk]].add(disk)
+            self.assertEqual(len(state.contacts), int((np.linalg.svd(state.balanced(self))[1] > 1e-7).sum()))
+            bear = state.bearing()
             turning = sum(len(disks) == 1 for disks in bear.values())
             self.assertEqual(3 * len(bear) - 2 + 3 - len(state.contacts), turning)  # translations of all are none
         self.assertIn("expected unions of disks", prepared("oval", "--cell").stderr)
@@ -141,14 +145,11 @@ class Clumps(unittest.TestCase):
             if (i % 4, j % 4) != (0, 2):  # neighbours touch from within
                 self.assertEqual(distance, abs(state.disks[i, 2] - state.disks[j, 2]))
         self.assertLess(abs(state.gaps(np.zeros(26))).max(), 2e-14)
-        rows = state.derivatives()
-        force = np.linalg.lstsq(rows.T, np.eye(26)[24] + np.eye(26)[25], rcond=None)[0]
-        self.assertLess(abs(rows.T @ force - np.eye(26)[24] - np.eye(26)[25]).max(), 1e-8)
-        self.assertGreater(force.min(), 1e-6)
+        rows = state.balanced(self)
         values, right = np.linalg.svd(rows)[1:]
         self.assertEqual(sum(values > 1e-7), len(state.contacts))
-        loaded = {state.body[disk] for contact in state.contacts for disk in contact if not isinstance(disk, str)}
-        mechanisms = [v for v in right[len(state.contacts) :] if any(abs(v[3 * k : 3 * k + 3]).max() > 1e-6 for k, b in enumerate(state.bodies) if b in loaded)]
+        loaded = [k for k, body in enumerate(state.bodies) if body in state.bearing()]
+        mechanisms = [v for v in right[len(state.contacts) :] if any(abs(v[3 * k : 3 * k + 3]).max() > 1e-6 for k in loaded)]
         self.assertGreaterEqual(len(mechanisms), 2)
         back = np.linalg.pinv(rows)
 

@@ -39,9 +39,7 @@ class Crafted(unittest.TestCase):
     def lattice(self, m, **options):
         """m x m equal disks in a box; Fractions, so that nothing is rounded."""
         step = Fraction(2, 3)
-        disks = [
-            (step / 2 + step * i, step / 2 + step * j, step / 2) for j in range(m) for i in range(m)
-        ]
+        disks = [(step / 2 + step * i, step / 2 + step * j, step / 2) for j in range(m) for i in range(m)]
         return isostat.exact_packing(disks, length=(m * step, m * step), **options)
 
     def test_cells_have_counts_for_every_strain(self):
@@ -59,9 +57,7 @@ class Crafted(unittest.TestCase):
     def test_rank_and_self_stresses_of_a_square_lattice(self):
         packing = self.lattice(3)
         seen = packing.inspect()
-        self.assertEqual(
-            (seen.dofs, len(seen.contacts), seen.rank, seen.h, seen.k), (20, 24, 20, 4, 0)
-        )
+        self.assertEqual((seen.dofs, len(seen.contacts), seen.rank, seen.h, seen.k), (20, 24, 20, 4, 0))
         self.assertIs(seen.rank_exact, Verdict.PROVED)
         self.assertEqual(len(seen.self_stresses), 4)
         columns = packing.exact_columns()
@@ -77,9 +73,7 @@ class Crafted(unittest.TestCase):
 
     def test_forces_and_centres_are_exact(self):
         packing = isostat.exact_packing(
-            [(1, 1, 1), ("1 + 2*sqrt(2)", 2, 2)],
-            length=("3 + 2*sqrt(2)", 4),
-            wall_force=(1, Fraction(1, 2)),
+            [(1, 1, 1), ("1 + 2*sqrt(2)", 2, 2)], length=("3 + 2*sqrt(2)", 4), wall_force=(1, Fraction(1, 2))
         )
         self.assertEqual(packing.centres[1][0], 1 + 2 * isostat.sqrt(2))
         seen = packing.inspect()

@@ -40,15 +40,12 @@ class Proofs(Folder):
         self.assertEqual(seen.opens_low, (1, -2))
         self.assertEqual(seen.sigma2_high, math.inf)
         self.assertIsNone(seen.opens_high)
-        inside = (seen.force_intervals[:, 0] <= seen.forces) & (
-            seen.forces <= seen.force_intervals[:, 1]
-        )
-        self.assertTrue(inside.all())
+        low, high = seen.force_intervals.T
+        self.assertTrue(((low <= seen.forces) & (seen.forces <= high)).all())
 
     def test_forces_of_many_copies_are_left_unordered_without_more_digits(self):
         (self.folder / "cell.toml").write_text(
-            '[packing]\ndisks = 20\nseed = 1\n[cell]\nkind = "rectangular"\n'
-            '[[programme]]\ndo = "up"\nequilibria = 1\n'
+            '[packing]\ndisks = 20\nseed = 1\n[cell]\nkind = "rectangular"\n[[programme]]\ndo = "up"\nequilibria = 1\n'
         )
         prepare = [program, "prepare", "cell.toml", "-o", "one.json"]
         subprocess.run(prepare, cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
@@ -68,18 +65,8 @@ class Proofs(Folder):
         self.assertIn("1-bottom", seen.remark)
 
     def test_a_state_that_is_not_isostatic_is_an_exception_with_its_id(self):
-        state = isostat.State.from_arrays(
-            [[1, 1]],
-            [1],
-            [2, 2],
-            [
-                (0, "left"),
-                (0, "bottom"),
-                (0, "right"),
-                (0, "top"),
-            ],
-            upper=("fixed", "movable"),
-        )
+        contacts = [(0, "left"), (0, "bottom"), (0, "right"), (0, "top")]
+        state = isostat.State.from_arrays([[1, 1]], [1], [2, 2], contacts, upper=("fixed", "movable"))
         with self.assertRaises(isostat.NotIsostatic) as caught:
             isostat.inspect(state)
         self.assertEqual(caught.exception.id, "not_isostatic")
@@ -95,9 +82,7 @@ class Proofs(Folder):
         self.assertIsNone(certificate.high)
         checked = isostat.verify(certificate)
         self.assertIs(checked.verdict, Verdict.PROVED)
-        self.assertEqual(
-            {check.claim for check in checked.checks if check.claimed} >= {"forces", "stable"}, True
-        )
+        self.assertGreaterEqual({check.claim for check in checked.checks if check.claimed}, {"forces", "stable"})
         path = self.folder / "two.cert.json"
         certificate.write(path)
         self.assertIs(isostat.verify(path).verdict, Verdict.PROVED)

@@ -51,9 +51,7 @@ class Records(Folder):
     def sheared(self, equilibria=2):
         """A run of a cell whose tilt is loaded."""
         shutil.copy(project / "examples/cells/tilted-100.json", self.folder)
-        return isostat.load(
-            self.run_scene(
-                text=f"""
+        scene = f"""
 [packing]
 file = "tilted-100.json"
 [load]
@@ -64,8 +62,7 @@ equilibria = {equilibria}
 [output]
 states_every = 1
 """
-            )
-        )
+        return isostat.load(self.run_scene(scene))
 
     def test_forces_at_any_shear_of_a_run_in_a_cell(self):
         run = self.sheared()
@@ -162,13 +159,8 @@ states_every = 1
         from isostat._records import contact_of_name
 
         known = {
-            "3-7": (3, 7, 0, 0),
-            "3-8(1,0)": (3, 8, 1, 0),
-            "3-12(-1,-2)": (3, 12, -1, -2),
-            "3-3(1,0)": (3, 3, 1, 0),
-            "3-left": (3, -1, 0, 0),
-            "3-top": (3, -4, 0, 0),
-            "held x of grain 3": (6, -9, 0, 0),
+            "3-7": (3, 7, 0, 0), "3-8(1,0)": (3, 8, 1, 0), "3-12(-1,-2)": (3, 12, -1, -2), "3-3(1,0)": (3, 3, 1, 0),
+            "3-left": (3, -1, 0, 0), "3-top": (3, -4, 0, 0), "held x of grain 3": (6, -9, 0, 0),
             "held y of grain 10": (21, -9, 0, 0),
         }
         for name, contact in known.items():

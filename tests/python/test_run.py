@@ -40,9 +40,7 @@ class Runs(Folder):
         run.play(on_equilibrium=equilibria.append, on_arc=arcs.append)
         self.same_records(program, run.path)
         events = isostat.load(program).events
-        self.assertEqual(
-            [arc.opened for arc in arcs], [tuple(e) for e in events["opened"].tolist()]
-        )
+        self.assertEqual([arc.opened for arc in arcs], [tuple(e) for e in events["opened"].tolist()])
         self.assertEqual([arc.work for arc in arcs], events["work"].tolist())
         self.assertEqual([e.number for e in equilibria], list(range(6)))
         both = list(isostat.Run(sections).arcs())

@@ -16,9 +16,7 @@ class States(Folder):
             np.testing.assert_array_equal(other.positions, [[1, 1], [1 + 2 * np.sqrt(2), 2]])
             np.testing.assert_array_equal(other.radii, [1, 2])
             np.testing.assert_array_equal(other.length, [3 + 2 * np.sqrt(2), 4])
-            np.testing.assert_array_equal(
-                other.contacts, [(0, 1), (0, -1), (0, -2), (1, -2), (1, -3), (1, -4)]
-            )
+            np.testing.assert_array_equal(other.contacts, [(0, 1), (0, -1), (0, -2), (1, -2), (1, -3), (1, -4)])
             self.assertEqual(other.stress, [1, 1])
             self.assertEqual(other.walls, {"lower": ("fixed",) * 2, "upper": ("movable",) * 2})
 
@@ -50,11 +48,8 @@ class States(Folder):
     def test_numbers_are_finite_and_integers_are_integers(self):
         state = two_disks()
         for wrong in (np.nan, np.inf, -np.inf):
-            for ask in (
-                lambda: isostat.forces_at(state, wrong),
-                lambda: state.with_stress([1, wrong]),
-                lambda: isostat.snap(state, stiffness=wrong),
-            ):
+            for ask in (lambda: isostat.forces_at(state, wrong), lambda: state.with_stress([1, wrong]),
+                        lambda: isostat.snap(state, stiffness=wrong)):
                 with self.assertRaisesRegex(isostat.BadInput, "State|finite"):
                     ask()
         for first, last, rows in ((1, 0, 0), (0, 1, -1)):

@@ -211,10 +211,9 @@ inline const std::vector<State>& prepared_spheres(isostat::PreparedCell kind) {
         isostat::PreparationOptions options{.dimension = 3, .radii = cell_radii(2 + random.integer(5), random)};
         options.cell = kind;
         options.seed = seed;
-        isostat::PreparationReport report;
         try {
-            if (const auto prepared = isostat::prepare(options, report); prepared.ok()) {
-                all.push_back(prepared.value());
+            if (const auto prepared = prepared_or_none(options)) {
+                all.push_back(*prepared);
             }
         } catch (const isostat::Error&) { // too narrow for the largest
         }

@@ -3,8 +3,7 @@
 
 #include "contradictions/piles.hpp"
 #include "support/cells.hpp"
-
-#include <isostat/preparation/preparation.hpp>
+#include "support/prepared.hpp"
 
 namespace contradictions {
 

@@ -6,11 +6,7 @@
 
 namespace contradictions {
 
-using isostat::Contact;
-using isostat::ContactKind;
-using isostat::Packing;
-using isostat::State;
-using isostat::WallKind;
+using namespace isostat;
 using isostat::oracle::Real;
 using isostat::oracle::sign_of;
 using isostat::oracle::Truth;

@@ -7,7 +7,6 @@
 
 #include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
 
 namespace contradictions {
@@ -59,9 +58,7 @@ inline std::optional<State> prepared_start(Random& random) {
     options.radii = random_radii(options.disks, random);
     options.seed = random.bits() >> 12;
     options.load = random.integer(5) == 0 ? LoadKind::true_stress : LoadKind::nominal;
-    PreparationReport report;
-    auto made = prepare(options, report);
-    return made.ok() ? std::optional(made.value()) : std::nullopt;
+    return prepared_or_none(options);
 }
 
 /// A pile, perhaps with fixed disks and forces on disks: rearrangements may end with "every load is supported".
@@ -90,9 +87,7 @@ inline std::optional<State> start_in_cell(Random& random) {
     options.radii = random_radii(options.disks, random);
     options.seed = random.bits() >> 12;
     options.cell = random.integer(2) == 0 ? PreparedCell::rectangular : PreparedCell::tilted;
-    PreparationReport report;
-    auto made = prepare(options, report);
-    return made.ok() ? std::optional(made.value()) : std::nullopt;
+    return prepared_or_none(options);
 }
 
 /// Up or down by some equilibria, or to a stress inside or beyond what is supported: near ones need no arc.

@@ -12,12 +12,6 @@ using namespace crafted;
 
 namespace {
 
-std::optional<State> prepared_or_none(const PreparationOptions& options) {
-    PreparationReport report;
-    auto made = prepare(options, report);
-    return made.ok() ? std::optional(made.value()) : std::nullopt;
-}
-
 PreparationOptions disks_of(int count, double smallest = 1, double largest = 2) {
     return {.disks = count, .diameters = {smallest, largest}};
 }
@@ -249,8 +243,7 @@ BOOST_AUTO_TEST_CASE(twenty_thousand_disks, *boost::unit_test::disabled()) {
 
 BOOST_AUTO_TEST_CASE(units_that_are_powers_of_two_change_no_bit_and_others_no_event) {
     const State one = start();
-    const Played base = play(one, +1, equilibria);
-    BOOST_REQUIRE_MESSAGE(base.outcome.completed, base.why());
+    const Played base = completed(play(one, +1, equilibria));
     for (const int exponent : {-498, -300, -100, -10, 10, 100, 300, 498}) {
         const double s = std::ldexp(1.0, exponent);
         const std::string name = fmt::format("2^{} (about 1e{:.0f})", exponent, exponent * std::log10(2.0));

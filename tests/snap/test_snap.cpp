@@ -53,6 +53,15 @@ Sample of_spheres(const std::string& name) {
     return {test::on_its_lengths(test::state_of_spheres(test::read_spheres(name)))};
 }
 
+/// With its rattlers at rest it is an equilibrium, and these contacts carry.
+State rests_on(const Snap& found, const std::vector<Contact>& list) {
+    const State state = required(compare::with_resting_rattlers(found, 3));
+    const Certification truth = certify(state);
+    BOOST_TEST((truth.verdict == Verdict::proved));
+    BOOST_TEST((compare::carrying(state, truth) == list));
+    return state;
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_CASE(soft_spheres_snap_to_their_vertex_in_walls_slabs_and_cells) {
@@ -77,10 +86,7 @@ BOOST_AUTO_TEST_CASE(soft_spheres_snap_to_their_vertex_in_walls_slabs_and_cells)
         BOOST_TEST(way > 1e-8);
         const double mean = compare::mean_force(forces);
         BOOST_TEST(compare::split_forces(soft, forces, mean, found).rest < 1e-8);
-        const auto state = required(compare::with_resting_rattlers(found, 3));
-        const Certification truth = certify(state);
-        BOOST_TEST((truth.verdict == Verdict::proved));
-        BOOST_TEST((compare::carrying(state, truth) == sample.list));
+        rests_on(found, sample.list);
         // A contact less holds nothing; one more is too many; beyond the interval a force has the other sign.
         SoftState wrong = soft;
         wrong.contacts.erase(wrong.contacts.begin() + 5);
@@ -137,11 +143,7 @@ BOOST_AUTO_TEST_CASE(rattlers_come_to_rest_and_the_state_is_an_equilibrium_with_
     const Sample sample;
     const Snap found = compare::snap(sample.soft(1e6));
     BOOST_TEST_REQUIRE(!found.rattlers.empty());
-    const auto state = required(compare::with_resting_rattlers(found, 3));
-    BOOST_TEST(state.contacts.size() == 202U);
-    const Certification truth = certify(state);
-    BOOST_TEST((truth.verdict == Verdict::proved));
-    BOOST_TEST((compare::carrying(state, truth) == sample.list));
+    BOOST_TEST(rests_on(found, sample.list).contacts.size() == 202U);
 }
 
 BOOST_AUTO_TEST_CASE(frames_of_a_periodic_cell_or_a_channel_snap_to_their_vertex) {
@@ -152,10 +154,7 @@ BOOST_AUTO_TEST_CASE(frames_of_a_periodic_cell_or_a_channel_snap_to_their_vertex
             const SoftState soft = sample.soft(stiffness);
             const Snap found = compare::snap(soft);
             BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
-            const auto state = required(compare::with_resting_rattlers(found, 3));
-            const Certification truth = certify(state);
-            BOOST_TEST((truth.verdict == Verdict::proved));
-            BOOST_TEST((compare::carrying(state, truth) == sample.list));
+            rests_on(found, sample.list);
             for (std::size_t k = 32; k < soft.packing.q.size(); ++k) { // the cell of the sample
                 BOOST_TEST(std::abs(found.packing.q[k] - sample.state.packing.q[k]) < 1e-9);
                 BOOST_TEST(found.walls >= std::abs(soft.packing.q[k] - found.packing.q[k]));

@@ -10,6 +10,13 @@ inline isostat::State prepared(const isostat::PreparationOptions& options) {
     return required(isostat::prepare(options, report));
 }
 
+/// Nothing where no packing comes out.
+inline std::optional<isostat::State> prepared_or_none(const isostat::PreparationOptions& options) {
+    isostat::PreparationReport report;
+    const auto made = isostat::prepare(options, report);
+    return made.ok() ? std::optional(made.value()) : std::nullopt;
+}
+
 /// The first equilibrium of random disks, diameters 1 to 2.
 inline isostat::State prepared(int disks, std::uint64_t seed) {
     return prepared({.disks = disks, .seed = seed});

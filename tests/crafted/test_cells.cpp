@@ -17,6 +17,16 @@ using isostat::Contact;
 using isostat::StrainCounts;
 using isostat::Verdict;
 
+/// The doubles of an exact packing in its contacts, under equal stresses.
+isostat::State in_contacts(const ExactPacking& packing, const std::vector<Contact>& contacts) {
+    isostat::State state;
+    state.packing = approximate(packing);
+    state.contacts = contacts;
+    state.load.stress = {1, 1};
+    state.load.refer_to(state.packing);
+    return state;
+}
+
 /// x_j - x_i + A m for every m of a few periods, compared with the sum of the radii.
 std::vector<Contact> by_force(const ExactPacking& packing, int most) {
     std::vector<Contact> out;
@@ -257,11 +267,7 @@ BOOST_AUTO_TEST_CASE(a_state_is_jammed_as_the_exact_packing_where_own_images_tou
         const Inspection exact = inspected(packing);
         BOOST_REQUIRE(exact.jamming.has_value());
         BOOST_TEST((exact.jamming->strict == rows.strict));
-        isostat::State state;
-        state.packing = approximate(packing);
-        state.contacts = exact.contacts;
-        state.load.stress = {1, 1};
-        state.load.refer_to(state.packing);
+        const isostat::State state = in_contacts(packing, exact.contacts);
         const isostat::CellInspection seen = isostat::inspect_cell(state, isostat::certify(state));
         BOOST_TEST((seen.collective.verdict == exact.jamming->collective));
         BOOST_TEST((seen.strict.verdict == rows.strict), seen.strict.reason);
@@ -269,15 +275,11 @@ BOOST_AUTO_TEST_CASE(a_state_is_jammed_as_the_exact_packing_where_own_images_tou
     }
 }
 
-/// The doubles of an exact packing, in its contacts, the cell at rest.
+/// The same with the cell at rest.
 isostat::State in_doubles(const ExactPacking& packing) {
-    isostat::State state;
-    state.packing = approximate(packing);
+    isostat::State state = in_contacts(packing, exact_contacts(packing).value());
     state.packing.cell.keeps_shape = false;
     state.packing.cell.move(false, false);
-    state.contacts = exact_contacts(packing).value();
-    state.load.stress = {1, 1};
-    state.load.refer_to(state.packing);
     return state;
 }
 

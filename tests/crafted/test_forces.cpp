@@ -14,7 +14,6 @@ namespace {
 using namespace isostat::crafted;
 using examples::inspected;
 using isostat::Contact;
-using isostat::ContactKind;
 using isostat::Verdict;
 using isostat::WallKind;
 using Vector = std::array<Number, 2>;
@@ -241,10 +240,7 @@ BOOST_AUTO_TEST_CASE(a_stored_vertex_is_isostatic_and_its_exact_forces_solve_the
     BOOST_REQUIRE(inspection.forces_unique);
     const isostat::DofMap dofs(packing);
     const auto matrix = isostat::contact_matrix(packing, dofs, inspection.contacts);
-    std::vector<double> residual(26);
-    for (std::size_t c = 0; c < 26; ++c) {
-        residual[c] = force[c];
-    }
+    std::vector<double> residual(force.begin(), force.begin() + 26);
     int zeros = 0;
     for (std::size_t l = 0; l < 26; ++l) {
         for (int e = matrix.start[l]; e < matrix.start[l + 1]; ++e) {

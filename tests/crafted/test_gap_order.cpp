@@ -75,23 +75,21 @@ class Gap {
     Gap(const Gap&) = delete;
     Gap& operator=(const Gap&) = delete;
     [[nodiscard]] int compare(const Gap& other) const {
-        mpfr_t d;
-        mpfr_init2(d, 3000);
-        mpfr_sub(d, value_, other.value_, MPFR_RNDN);
-        const int out = mpfr_zero_p(d) != 0 || mpfr_get_exp(d) < -2000 ? 0 : mpfr_sgn(d);
-        mpfr_clear(d);
-        return out;
+        return sign_of([&](mpfr_t d) { mpfr_sub(d, value_, other.value_, MPFR_RNDN); });
     }
     [[nodiscard]] int compare(double t) const {
-        mpfr_t d;
-        mpfr_init2(d, 3000);
-        mpfr_sub_d(d, value_, t, MPFR_RNDN);
-        const int out = mpfr_zero_p(d) != 0 || mpfr_get_exp(d) < -2000 ? 0 : mpfr_sgn(d);
-        mpfr_clear(d);
-        return out;
+        return sign_of([&](mpfr_t d) { mpfr_sub_d(d, value_, t, MPFR_RNDN); });
     }
 
   private:
+    template <class Subtract> static int sign_of(Subtract subtract) {
+        mpfr_t d;
+        mpfr_init2(d, 3000);
+        subtract(d);
+        const int out = mpfr_zero_p(d) != 0 || mpfr_get_exp(d) < -2000 ? 0 : mpfr_sgn(d);
+        mpfr_clear(d);
+        return out;
+    }
     mpfr_t value_;
 };
 

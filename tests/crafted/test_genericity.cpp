@@ -11,9 +11,8 @@ using namespace isostat::crafted;
 using examples::example;
 
 Genericity perturbed(const ExactPacking& exact, int samples, double size, bool tilt = false) {
-    const auto contacts = required(exact_contacts(exact));
-    GenericityOptions options{.samples = samples, .size = size, .tilt = tilt};
-    return genericity(approximate(exact), contacts, options);
+    return genericity(approximate(exact), required(exact_contacts(exact)),
+                      {.samples = samples, .size = size, .tilt = tilt});
 }
 
 Genericity perturbed(const std::string& name, int samples, double size) {
@@ -163,8 +162,7 @@ BOOST_AUTO_TEST_CASE(a_packing_or_an_option_that_does_not_fit_is_refused) {
     const auto box = approximate(example("two_disks.toml"));
     BOOST_CHECK_THROW((void)genericity(approximate(example("arch.toml")), {}, {}), isostat::Error);
     for (const double size : {-1.0, 0.5, 1e300}) {
-        GenericityOptions options{.size = size};
-        BOOST_CHECK_THROW((void)genericity(box, {}, options), isostat::Error);
+        BOOST_CHECK_THROW((void)genericity(box, {}, {.size = size}), isostat::Error);
     }
     GenericityOptions tilt{.tilt = true};
     BOOST_CHECK_THROW((void)genericity(box, {}, tilt), isostat::Error);
@@ -172,6 +170,5 @@ BOOST_AUTO_TEST_CASE(a_packing_or_an_option_that_does_not_fit_is_refused) {
     auto half = approximate(example("cell_hexagonal_row.toml"));
     half.cell.period_moves = {true, false};
     BOOST_CHECK_THROW((void)genericity(half, {}, {}), isostat::Error);
-    GenericityOptions none{.samples = 0};
-    BOOST_CHECK_THROW((void)genericity(box, {}, none), isostat::Error);
+    BOOST_CHECK_THROW((void)genericity(box, {}, {.samples = 0}), isostat::Error);
 }

@@ -201,9 +201,7 @@ BOOST_AUTO_TEST_CASE(relabelling_scaling_and_turning_leave_the_counts_alone) {
         const crafted::Inspection before = inspected(packing);
         ExactPacking other = packing;
         std::vector<std::size_t> label(packing.radius.size());
-        for (std::size_t i = 0; i < label.size(); ++i) {
-            label[i] = i;
-        }
+        std::iota(label.begin(), label.end(), std::size_t{0});
         std::ranges::shuffle(label, random);
         const bool turns = packing.walls == isostat::Walls::none() && !packing.cell.any();
         const Number scale = n("7/3"), c = turns ? n("3/5") : Number(1), s = turns ? n("4/5") : Number(0);

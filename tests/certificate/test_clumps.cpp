@@ -396,27 +396,26 @@ BOOST_AUTO_TEST_CASE(unions_of_an_independent_program_are_proved_with_its_counts
         const State state = clumps(name);
         const auto expected = nlohmann::json::parse(state.provenance)["expected"];
         const Inspection inspection = inspected(state);
-        BOOST_TEST_CONTEXT(name) {
-            BOOST_TEST(inspection.equilibrium, inspection.remark);
-            BOOST_TEST((inspection.stable == Verdict::proved));
-            const isostat::Bodies bodies(state.packing);
-            int rattlers = 0;
-            for (const int i : inspection.rattlers) {
-                rattlers += bodies.of(i) == i ? 1 : 0;
-            }
-            BOOST_TEST(rattlers == static_cast<int>(expected["rattlers"].size()));
-            BOOST_TEST(inspection.rotational_rattlers.size() == expected["rotational_rattlers"].size());
-            BOOST_TEST(inspection.counting.contact_count == expected["N"].get<int>());
-            BOOST_TEST(inspection.counting.dof_count - 3 * rattlers == expected["N_f_of_loaded_bodies"].get<int>());
-            BOOST_TEST(inspection.counting.hyperstaticity == expected["h"].get<int>());
-            BOOST_TEST(inspection.counting.mechanisms - 3 * rattlers == expected["k"].get<int>());
-            BOOST_TEST(inspection.record.min_gap <= expected["smallest_other_gap"].get<double>() + 1e-12);
-            BOOST_TEST(inspection.record.min_gap > expected["smallest_other_gap"].get<double>() - 1e-9);
-            BOOST_TEST(inspection.record.min_gap_bound == 0); // a lower bound
-            BOOST_TEST(!inspection.yielding.has_value());     // of free motions W'' is 0, by counting
-            for (const auto& value : expected["second_variation"]) {
-                BOOST_TEST(std::abs(value.get<double>()) < 1e-9);
-            }
+        BOOST_TEST_INFO_SCOPE(name);
+        BOOST_TEST(inspection.equilibrium, inspection.remark);
+        BOOST_TEST((inspection.stable == Verdict::proved));
+        const isostat::Bodies bodies(state.packing);
+        int rattlers = 0;
+        for (const int i : inspection.rattlers) {
+            rattlers += bodies.of(i) == i ? 1 : 0;
+        }
+        BOOST_TEST(rattlers == static_cast<int>(expected["rattlers"].size()));
+        BOOST_TEST(inspection.rotational_rattlers.size() == expected["rotational_rattlers"].size());
+        BOOST_TEST(inspection.counting.contact_count == expected["N"].get<int>());
+        BOOST_TEST(inspection.counting.dof_count - 3 * rattlers == expected["N_f_of_loaded_bodies"].get<int>());
+        BOOST_TEST(inspection.counting.hyperstaticity == expected["h"].get<int>());
+        BOOST_TEST(inspection.counting.mechanisms - 3 * rattlers == expected["k"].get<int>());
+        BOOST_TEST(inspection.record.min_gap <= expected["smallest_other_gap"].get<double>() + 1e-12);
+        BOOST_TEST(inspection.record.min_gap > expected["smallest_other_gap"].get<double>() - 1e-9);
+        BOOST_TEST(inspection.record.min_gap_bound == 0); // a lower bound
+        BOOST_TEST(!inspection.yielding.has_value());     // of free motions W'' is 0, by counting
+        for (const auto& value : expected["second_variation"]) {
+            BOOST_TEST(std::abs(value.get<double>()) < 1e-9);
         }
     }
 }
@@ -427,17 +426,16 @@ BOOST_AUTO_TEST_CASE(places_where_held_angles_bear_torques_are_no_equilibria) {
     const std::vector<State> places = held_angles();
     BOOST_TEST(places.size() == 15U);
     for (std::size_t i = 0; i < places.size(); ++i) {
-        BOOST_TEST_CONTEXT("place " << i) {
-            const Inspection inspection = inspected(places[i]);
-            BOOST_TEST((inspection.record.verdict == Verdict::refuted));
-            BOOST_TEST((inspection.stable != Verdict::proved));
-            BOOST_TEST(inspection.remark.find("the mechanism moves") != std::string::npos, inspection.remark);
-            const Certification truth = certify(with_free_motions_held(places[i]));
-            BOOST_TEST((truth.verdict != Verdict::proved));
-            BOOST_TEST(!truth.claims.minimum.has_value());
-            BOOST_TEST(!truth.claims.counting.has_value());
-            BOOST_TEST(!truth.claims.stable);
-        }
+        BOOST_TEST_INFO_SCOPE("place " << i);
+        const Inspection inspection = inspected(places[i]);
+        BOOST_TEST((inspection.record.verdict == Verdict::refuted));
+        BOOST_TEST((inspection.stable != Verdict::proved));
+        BOOST_TEST(inspection.remark.find("the mechanism moves") != std::string::npos, inspection.remark);
+        const Certification truth = certify(with_free_motions_held(places[i]));
+        BOOST_TEST((truth.verdict != Verdict::proved));
+        BOOST_TEST(!truth.claims.minimum.has_value());
+        BOOST_TEST(!truth.claims.counting.has_value());
+        BOOST_TEST(!truth.claims.stable);
     }
 }
 
@@ -570,14 +568,13 @@ BOOST_AUTO_TEST_CASE(intervals_of_the_forces_of_clumps_hold_those_of_200_digits)
         const State state = with_free_motions_held(clumps(name));
         const Certification truth = certify(state);
         const isostat::oracle::Truth digits(state);
-        BOOST_TEST_CONTEXT(name) {
-            BOOST_TEST_REQUIRE(digits.known, digits.why);
-            for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-                const isostat::oracle::Real& f = digits.force[l];
-                BOOST_TEST((isostat::oracle::Real(truth.finite[l].lower) <= f + 1e-60 &&
-                            f - 1e-60 <= isostat::oracle::Real(truth.finite[l].upper)),
-                           isostat::to_string(state.contacts[l]));
-            }
+        BOOST_TEST_INFO_SCOPE(name);
+        BOOST_TEST_REQUIRE(digits.known, digits.why);
+        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+            const isostat::oracle::Real& f = digits.force[l];
+            BOOST_TEST((isostat::oracle::Real(truth.finite[l].lower) <= f + 1e-60 &&
+                        f - 1e-60 <= isostat::oracle::Real(truth.finite[l].upper)),
+                       isostat::to_string(state.contacts[l]));
         }
     }
 }
@@ -589,22 +586,21 @@ BOOST_AUTO_TEST_CASE(ovals_of_an_independent_program_rest_in_strict_minima_with_
         const State state = clumps(name);
         const auto expected = nlohmann::json::parse(state.provenance)["expected"];
         const Inspection inspection = inspected(state);
-        BOOST_TEST_CONTEXT(name) {
-            BOOST_TEST((inspection.stable == Verdict::proved), inspection.remark);
-            const int rattlers = static_cast<int>(expected["rattlers"].size());
-            BOOST_TEST(static_cast<int>(inspection.rattlers.size()) == 4 * rattlers); // members
-            BOOST_TEST(inspection.counting.contact_count == expected["N"].get<int>());
-            BOOST_TEST(inspection.counting.dof_count - 3 * rattlers == expected["N_f_of_loaded_bodies"].get<int>());
-            BOOST_TEST(inspection.counting.hyperstaticity == 0);
-            BOOST_TEST(inspection.counting.mechanisms - 3 * rattlers == expected["k"].get<int>());
-            BOOST_TEST(std::abs(inspection.record.min_gap - expected["smallest_other_gap"].get<double>()) < 1e-9);
-            const auto& eigenvalues = inspection.yielding->second_variation;
-            BOOST_TEST_REQUIRE(eigenvalues.size() == expected["second_variation"].size());
-            for (std::size_t i = 0; i < eigenvalues.size(); ++i) {
-                BOOST_TEST(std::abs(eigenvalues[i].value - expected["second_variation"][i].get<double>()) < 1e-9);
-                BOOST_TEST(eigenvalues[i].radius > 0);
-                BOOST_TEST(eigenvalues[i].radius < 1e-5);
-            }
+        BOOST_TEST_INFO_SCOPE(name);
+        BOOST_TEST((inspection.stable == Verdict::proved), inspection.remark);
+        const int rattlers = static_cast<int>(expected["rattlers"].size());
+        BOOST_TEST(static_cast<int>(inspection.rattlers.size()) == 4 * rattlers); // members
+        BOOST_TEST(inspection.counting.contact_count == expected["N"].get<int>());
+        BOOST_TEST(inspection.counting.dof_count - 3 * rattlers == expected["N_f_of_loaded_bodies"].get<int>());
+        BOOST_TEST(inspection.counting.hyperstaticity == 0);
+        BOOST_TEST(inspection.counting.mechanisms - 3 * rattlers == expected["k"].get<int>());
+        BOOST_TEST(std::abs(inspection.record.min_gap - expected["smallest_other_gap"].get<double>()) < 1e-9);
+        const auto& eigenvalues = inspection.yielding->second_variation;
+        BOOST_TEST_REQUIRE(eigenvalues.size() == expected["second_variation"].size());
+        for (std::size_t i = 0; i < eigenvalues.size(); ++i) {
+            BOOST_TEST(std::abs(eigenvalues[i].value - expected["second_variation"][i].get<double>()) < 1e-9);
+            BOOST_TEST(eigenvalues[i].radius > 0);
+            BOOST_TEST(eigenvalues[i].radius < 1e-5);
         }
     }
 }

@@ -85,30 +85,29 @@ State state_of(const Lattice& lattice) {
 
 BOOST_AUTO_TEST_CASE(the_digits_of_another_program_lie_in_every_interval) {
     for (const std::string& name : packings) {
-        BOOST_TEST_CONTEXT(name) {
-            const nlohmann::json file = isostat::test::read_spheres(name);
-            const nlohmann::json& expected = file["expected"];
-            const State state = isostat::test::state_of_spheres(file);
-            isostat::validate(state.packing, name);
-            const Certification truth = certify(state);
-            BOOST_TEST((truth.verdict == Verdict::proved),
-                       (truth.claims.undecided.empty() ? "" : truth.claims.undecided[0]));
-            BOOST_TEST(truth.counting.dof_count == expected["N_f"].get<int>());
-            BOOST_TEST(truth.counting.rank == expected["rank_mod_2147483647"].get<int>());
-            BOOST_TEST(truth.counting.hyperstaticity == expected["h"].get<int>());
-            BOOST_TEST(truth.counting.mechanisms == expected["k"].get<int>());
-            BOOST_TEST(std::abs(state.packing.solid_fraction() - expected["solid_fraction"].get<double>()) < 1e-12);
-            check_forces(state, truth, file);
-            BOOST_TEST_REQUIRE(truth.claims.load_interval.has_value());
-            check_end(state, truth.claims.load_interval->high, expected["triaxial_interval"]["up"]);
-            check_end(state, truth.claims.load_interval->low, expected["triaxial_interval"]["down"]);
-            const double sigma = expected["smallest_singular_value"].get<double>();
-            BOOST_TEST(truth.smallest_sigma <= sigma * (1 + 1e-9));
-            BOOST_TEST(truth.smallest_sigma >= 0.3 * sigma);
-            BOOST_TEST_REQUIRE(truth.claims.gaps.has_value());
-            BOOST_TEST(std::abs(truth.claims.gaps->smallest - expected["smallest_gap_of_others"].get<double>()) < 1e-9);
-            BOOST_TEST((truth.claims.gaps->where == isostat::test::contact_of(expected["pair_with_smallest_gap"])));
-        }
+        BOOST_TEST_INFO_SCOPE(name);
+        const nlohmann::json file = isostat::test::read_spheres(name);
+        const nlohmann::json& expected = file["expected"];
+        const State state = isostat::test::state_of_spheres(file);
+        isostat::validate(state.packing, name);
+        const Certification truth = certify(state);
+        BOOST_TEST((truth.verdict == Verdict::proved),
+                   (truth.claims.undecided.empty() ? "" : truth.claims.undecided[0]));
+        BOOST_TEST(truth.counting.dof_count == expected["N_f"].get<int>());
+        BOOST_TEST(truth.counting.rank == expected["rank_mod_2147483647"].get<int>());
+        BOOST_TEST(truth.counting.hyperstaticity == expected["h"].get<int>());
+        BOOST_TEST(truth.counting.mechanisms == expected["k"].get<int>());
+        BOOST_TEST(std::abs(state.packing.solid_fraction() - expected["solid_fraction"].get<double>()) < 1e-12);
+        check_forces(state, truth, file);
+        BOOST_TEST_REQUIRE(truth.claims.load_interval.has_value());
+        check_end(state, truth.claims.load_interval->high, expected["triaxial_interval"]["up"]);
+        check_end(state, truth.claims.load_interval->low, expected["triaxial_interval"]["down"]);
+        const double sigma = expected["smallest_singular_value"].get<double>();
+        BOOST_TEST(truth.smallest_sigma <= sigma * (1 + 1e-9));
+        BOOST_TEST(truth.smallest_sigma >= 0.3 * sigma);
+        BOOST_TEST_REQUIRE(truth.claims.gaps.has_value());
+        BOOST_TEST(std::abs(truth.claims.gaps->smallest - expected["smallest_gap_of_others"].get<double>()) < 1e-9);
+        BOOST_TEST((truth.claims.gaps->where == isostat::test::contact_of(expected["pair_with_smallest_gap"])));
     }
 }
 
@@ -211,13 +210,12 @@ BOOST_AUTO_TEST_CASE(lattices_have_their_counts_in_four_kinds_of_cell) {
         const State state = state_of(lattice);
         const auto counts = isostat::count_strains(state.packing, state.contacts);
         for (std::size_t k = 0; k < 4; ++k) {
-            BOOST_TEST_CONTEXT(lattice.site.size() << " sites, " << isostat::to_string(isostat::strains[k])) {
-                BOOST_TEST(counts[k].dof_count == expected[k][0]);
-                BOOST_TEST(counts[k].contact_count == expected[k][1]);
-                BOOST_TEST(counts[k].hyperstaticity == expected[k][2]);
-                BOOST_TEST(counts[k].mechanisms == expected[k][3]);
-                BOOST_TEST((counts[k].rank_exact == Verdict::proved));
-            }
+            BOOST_TEST_INFO_SCOPE(lattice.site.size() << " sites, " << isostat::to_string(isostat::strains[k]));
+            BOOST_TEST(counts[k].dof_count == expected[k][0]);
+            BOOST_TEST(counts[k].contact_count == expected[k][1]);
+            BOOST_TEST(counts[k].hyperstaticity == expected[k][2]);
+            BOOST_TEST(counts[k].mechanisms == expected[k][3]);
+            BOOST_TEST((counts[k].rank_exact == Verdict::proved));
         }
     }
 }

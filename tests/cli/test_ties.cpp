@@ -3,7 +3,6 @@
 #include "cli/program.hpp"
 
 using namespace program;
-namespace fs = std::filesystem;
 
 namespace {
 

@@ -3,7 +3,6 @@
 #include "cli/program.hpp"
 
 using namespace program;
-namespace fs = std::filesystem;
 
 BOOST_FIXTURE_TEST_CASE(the_wrong_kind_of_file_names_the_commands_that_take_it, scratch::InFolder) {
     const auto path = [this](const char* name) { return (folder / name).string(); };

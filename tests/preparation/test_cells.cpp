@@ -2,12 +2,12 @@
 // Spheres from random starts: proved vertices in boxes and in cells of three kinds.
 #include "oracle/pairs.hpp"
 #include "preparation/soft.hpp"
+#include "support/cells.hpp"
 #include "support/free_grains.hpp"
 #include "support/prepared.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/io/state_file.hpp>
 
 namespace {
 
@@ -147,8 +147,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_again_in_its_cell) {
 }
 
 BOOST_AUTO_TEST_CASE(a_vertex_is_found_in_a_channel) {
-    Packing soft =
-        pressed_a_little(read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/channel_16.json").state.packing);
+    Packing soft = pressed_a_little(cells::of_file("channel_16").packing);
     PreparationOptions options = periodic(16, 1);
     PreparationReport report;
     const State state = vertex_near(soft, options);

@@ -161,7 +161,6 @@ BOOST_AUTO_TEST_CASE(a_shaken_vertex_is_found_again) {
         options.seed = 2; // the same infinitesimal loads
         const auto found = vertex_near(shaken, options);
         check::is_proved_vertex(found, 1);
-        const auto after = inspect_vertex(found);
         for (std::size_t l = 0; l < vertex.contacts.size(); ++l) {
             if (before.value().structural_zero[l] == 0) { // a rattler may have another place to rest
                 BOOST_TEST(std::ranges::binary_search(found.contacts, vertex.contacts[l]));

@@ -322,17 +322,16 @@ BOOST_AUTO_TEST_CASE(vertices_with_bars_lie_within_their_enclosures) {
                 way == 2   ? enclose_vertex_double_double(state.packing, at.structure, at.factorisation, at.inverse)
                 : way == 1 ? enclose_vertex(state.packing, at.structure, at.factorisation, at.inverse)
                            : enclose_vertex(state.packing, at.structure, at.inverse);
-            BOOST_TEST_CONTEXT(name << ", way " << way) {
-                BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
-                Real square = 0;
-                for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
-                    const Real place =
-                        Real(state.packing.q[k]) + (vertex.correction.empty() ? Real(0) : Real(vertex.correction[k]));
-                    square += (place - truth.q[k]) * (place - truth.q[k]);
-                }
-                BOOST_TEST(sqrt(square) <= Real(vertex.radius));
-                BOOST_TEST(vertex.radius < (way == 2 ? 1e-20 : 1e-9));
+            BOOST_TEST_INFO_SCOPE(name << ", way " << way);
+            BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
+            Real square = 0;
+            for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
+                const Real place =
+                    Real(state.packing.q[k]) + (vertex.correction.empty() ? Real(0) : Real(vertex.correction[k]));
+                square += (place - truth.q[k]) * (place - truth.q[k]);
             }
+            BOOST_TEST(sqrt(square) <= Real(vertex.radius));
+            BOOST_TEST(vertex.radius < (way == 2 ? 1e-20 : 1e-9));
         }
     }
 }

@@ -5,8 +5,6 @@
 #include "checker/run_records.hpp"
 #include "support/forger.hpp"
 
-#include <isostat/core/result.hpp>
-
 namespace altered_run {
 
 namespace fs = std::filesystem;

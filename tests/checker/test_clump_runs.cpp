@@ -9,8 +9,6 @@
 
 #include <isostat/certificate/certify.hpp>
 
-#include <utility>
-
 using namespace isostat;
 using json::Json;
 

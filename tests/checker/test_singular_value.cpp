@@ -13,8 +13,6 @@
 
 #include <Eigen/SVD>
 
-#include <random>
-
 using namespace isostat;
 using checker::Problem;
 using checker::smallest_singular_value;

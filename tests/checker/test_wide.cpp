@@ -6,7 +6,6 @@
 #include "checker/wide.hpp"
 
 #include <cfenv>
-#include <random>
 
 using namespace isostat::checker;
 using isostat::State;

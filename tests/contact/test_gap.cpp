@@ -2,7 +2,6 @@
 #include "contact/separation.hpp"
 #include "oracle/packings.hpp"
 #include "support/scale.hpp"
-#include "support/test.hpp"
 
 #include <isostat/contact/state.hpp>
 

@@ -6,9 +6,6 @@
 #include "packing/bodies.hpp"
 #include "support/cells.hpp"
 #include "support/free_grains.hpp"
-#include "support/test.hpp"
-
-#include <isostat/core/result.hpp>
 
 using isostat::Contact;
 using isostat::Packing;

@@ -3,8 +3,6 @@
 
 #include "contradictions/cells.hpp"
 
-#include <isostat/core/result.hpp>
-
 namespace contradictions::detail {
 
 inline double ulps(double x, int count) {

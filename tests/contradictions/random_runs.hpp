@@ -5,7 +5,6 @@
 #include "support/played.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/scene/scene.hpp>
 

@@ -5,12 +5,10 @@
 #include "io/vertex_text.hpp"
 #include "rigidity/isostatic.hpp"
 #include "support/crafted.hpp"
-#include "support/test.hpp"
 #include "support/threads.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/foreign/foreign.hpp>

@@ -6,7 +6,6 @@
 #include "support/free_grains.hpp"
 #include "support/scale.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/exact/number.hpp>
 
 #include <crafted/gap_order.hpp>

@@ -3,8 +3,6 @@
 #include "crafted/genericity.hpp"
 #include "examples.hpp"
 
-#include <isostat/core/result.hpp>
-
 namespace {
 
 using namespace isostat::crafted;

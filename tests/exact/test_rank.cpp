@@ -2,7 +2,6 @@
 #include "oracle/matrices.hpp"
 #include "oracle/random.hpp"
 #include "support/scale.hpp"
-#include "support/test.hpp"
 
 #include <gmpxx.h>
 

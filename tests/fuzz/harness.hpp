@@ -5,7 +5,6 @@
 #include "fuzz/mutation.hpp"
 
 #include <isostat/contact/state.hpp>
-#include <isostat/core/result.hpp>
 
 #include <ctime>
 

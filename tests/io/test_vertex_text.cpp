@@ -3,7 +3,6 @@
 #include "io/vertex_text.hpp"
 #include "support/bad_input.hpp"
 #include "support/scratch.hpp"
-#include "support/test.hpp"
 
 #include <isostat/io/state_file.hpp>
 

@@ -3,7 +3,6 @@
 #include "support/bad_input.hpp"
 #include "support/free_grains.hpp"
 #include "support/scale.hpp"
-#include "support/test.hpp"
 
 #include <isostat/packing/load.hpp>
 

@@ -3,7 +3,6 @@
 #include "../../src/preparation/clique_matrix.hpp"
 #include "../../src/preparation/soft_newton.hpp"
 #include "check.hpp"
-#include "support/test.hpp"
 #include "support/threads.hpp"
 
 using namespace isostat;

@@ -3,7 +3,6 @@
 #include "oracle/matrices.hpp"
 #include "sparse/pattern.hpp"
 #include "support/scale.hpp"
-#include "support/test.hpp"
 
 #include <future>
 

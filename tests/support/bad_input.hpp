@@ -3,8 +3,6 @@
 
 #include "support/test.hpp"
 
-#include <isostat/core/result.hpp>
-
 template <class Work> void expect_error(Work&& work, isostat::ErrorKind kind, const std::vector<std::string>& words) {
     try {
         work();

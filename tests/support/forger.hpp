@@ -6,7 +6,6 @@
 #include "support/scratch.hpp"
 
 #include <isostat/checker/verify.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 namespace forger {

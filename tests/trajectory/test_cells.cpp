@@ -4,8 +4,6 @@
 #include "support/scratch.hpp"
 #include "support/segments.hpp"
 
-#include <isostat/core/result.hpp>
-
 #include <nlohmann/json.hpp>
 
 using namespace isostat;

@@ -1,6 +1,5 @@
 // Families that approach a degeneracy: the right answer on either side however small delta is, and a tie at 0.
 #include "support/families.hpp"
-#include "support/test.hpp"
 
 using families::Answer;
 

@@ -1,7 +1,6 @@
 // One arc and one mechanism, against the closed form of two disks: x_1 - x_0 = 2 sqrt 2, y_1 - y_0 = 1.
 #include "support/crafted.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 using namespace isostat;

@@ -320,8 +320,7 @@ std::array<double, 2> power_and_imbalance(const State& state, const Certificatio
 BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_bears_a_pressure) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const State state = isotropic(seed);
-        const std::size_t n = state.packing.radius.size();
-        BOOST_TEST(state.contacts.size() == 2 * n - 1);
+        BOOST_TEST(state.contacts.size() == 2 * state.packing.radius.size() - 1);
         BOOST_TEST(std::abs(state.packing.length(1) / state.packing.length(0) - 1.25) < 1e-12);
         const Certification truth = certify(state);
         BOOST_TEST((truth.verdict == Verdict::proved));

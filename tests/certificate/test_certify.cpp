@@ -141,8 +141,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_of_one_two_and_three_disks_lie_in_the_claimed_
         BOOST_TEST(check_claims(state, c, symmetric ? 3 : 0), all(c.claims.undecided));
     }
     const Real root2 = sqrt(Real(2));
-    const State two = two_disks(1, 2, 1, 1);
-    const CertificateClaims claims = certify(two).claims;
+    const CertificateClaims claims = certify(two_disks(1, 2, 1, 1)).claims;
     BOOST_REQUIRE((claims.forces && claims.load_interval && claims.gaps));
     const Real t = 1 / (2 * root2);
     const std::vector<Real> forces{Real(1), t, 3 / (2 * root2), Real(1), Real(1), 1 - t};
@@ -156,8 +155,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_of_one_two_and_three_disks_lie_in_the_claimed_
     BOOST_TEST((claims.gaps->where == left(1) || claims.gaps->where == top(0)));
     BOOST_TEST(Real(claims.gaps->smallest) <= 2 * root2 - 1);
     // Three disks: both ends, the lower one a class of five forces that vanish with the load.
-    const State three = three_disks(1, 1, 1.5, 3, 1);
-    const CertificateClaims c = certify(three).claims;
+    const CertificateClaims c = certify(three_disks(1, 1, 1.5, 3, 1)).claims;
     BOOST_REQUIRE(c.load_interval);
     BOOST_TEST(contains(c.load_interval->high.stress, 3 * 2 * sqrt(Real(1.5) * Real(3.5))));
     BOOST_TEST((c.load_interval->high.opens == pair(0, 1)));
@@ -286,8 +284,7 @@ BOOST_AUTO_TEST_CASE(a_force_near_zero_is_decided_by_a_higher_rung_or_not_at_all
         pulled.load.stress[1] = -size;
         BOOST_TEST((certify(pulled).verdict == Verdict::refuted));
     }
-    const State none = one_disk(1, 0);
-    const Certification zero = certify(none);
+    const Certification zero = certify(one_disk(1, 0));
     BOOST_TEST((zero.verdict == Verdict::undecided));
     BOOST_TEST((!zero.claims.forces && !zero.claims.stable && zero.claims.vertex));
 }
@@ -473,8 +470,8 @@ BOOST_AUTO_TEST_CASE(claims_hold_for_many_small_packings, *boost::unit_test::lab
                 ++tried;
                 complete += check_claims(moved, c) ? 1 : 0;
                 const oracle::Truth truth = known_truth(moved);
-                const bool negative = std::any_of(truth.force.begin(), truth.force.end(),
-                                                  [](const Real& f) { return f < -Real("1e-60"); });
+                const bool negative =
+                    std::ranges::any_of(truth.force, [](const Real& f) { return f < -Real("1e-60"); });
                 BOOST_TEST(((c.verdict == Verdict::refuted) == negative), all(c.claims.undecided));
             }
         }

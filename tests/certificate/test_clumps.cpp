@@ -7,7 +7,6 @@
 #include "support/units.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/result.hpp>
 
 using namespace isostat;
 using namespace isostat::test;
@@ -127,8 +126,7 @@ BOOST_AUTO_TEST_CASE(what_is_held_so_that_the_list_is_not_regular_is_counted_by_
 BOOST_AUTO_TEST_CASE(a_force_on_the_dangling_member_makes_its_motion_no_free_one) {
     State state = disk_with_a_dangling_member();
     state.load.disk_force = {0, 0, 1e-3, 0};
-    const State held = with_free_motions_held(state);
-    const Certification truth = certify(held);
+    const Certification truth = certify(with_free_motions_held(state));
     BOOST_TEST((truth.verdict == Verdict::undecided));
     BOOST_TEST(!truth.claims.counting);
     const Inspection inspection = inspected(state);
@@ -514,8 +512,7 @@ BOOST_AUTO_TEST_CASE(a_turned_oval_yields_at_the_rate_of_its_closed_form) {
 BOOST_AUTO_TEST_CASE(a_contact_at_a_joint_or_beyond_is_no_contact_of_arcs) {
     const double joint = std::atan2(4, 3);
     State at_joint = oval_in_a_box(1, 1, joint); // the wall is level with a joint: cap and flank touch it both
-    const auto inspection = inspected(at_joint);
-    BOOST_TEST((inspection.stable != Verdict::proved));
+    BOOST_TEST((inspected(at_joint).stable != Verdict::proved));
     // Turned by a load to near where the flank ends, tan theta = 3/4 at g = 1/4, and stored beside the minimum.
     const auto turned = [](double g, double beside) {
         State state = oval_in_a_box(1, 1, std::atan(3 * g / (2 - 4 * g)) - beside);

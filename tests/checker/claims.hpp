@@ -40,8 +40,8 @@ inline Verification read_and_verified(const Certificate& certificate,
 
 /// Undecided where there is no such claim.
 inline ClaimCheck answer_to(const Verification& verification, const std::string& claim) {
-    const auto found = std::find_if(verification.checks.begin(), verification.checks.end(),
-                                    [&claim](const ClaimCheck& check) { return check.claim == claim; });
+    const auto found =
+        std::ranges::find_if(verification.checks, [&claim](const ClaimCheck& check) { return check.claim == claim; });
     return found == verification.checks.end() ? ClaimCheck{} : *found;
 }
 

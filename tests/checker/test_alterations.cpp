@@ -261,8 +261,7 @@ ClaimAlterations alterations_of_the_cell(const Certificate& original) {
     };
     const Packing& packing = original.state.packing;
     const auto first_image = [](Certificate& c) -> Image& {
-        return std::find_if(c.state.contacts.begin(), c.state.contacts.end(),
-                            [](const Contact& l) { return l.i != l.j && !l.image.is_here(); })
+        return std::ranges::find_if(c.state.contacts, [](const Contact& l) { return l.i != l.j && !l.image.is_here(); })
             ->image;
     };
     add("image changed", [](Certificate& c) {

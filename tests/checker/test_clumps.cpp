@@ -108,10 +108,9 @@ BOOST_AUTO_TEST_CASE(forged_certificates_of_clumps_do_not_verify) {
         std::function<void(Certificate&)> forge;
     };
     const Certificate sound = of_clumps(clumps("dimer2_20_2")); // a rattler, three rotational rattlers
-    const auto bar =
-        static_cast<std::size_t>(std::find_if(sound.state.contacts.begin(), sound.state.contacts.end(),
-                                              [](const Contact& c) { return c.kind == ContactKind::bar; }) -
-                                 sound.state.contacts.begin());
+    const auto bar = static_cast<std::size_t>(
+        std::ranges::find_if(sound.state.contacts, [](const Contact& c) { return c.kind == ContactKind::bar; }) -
+        sound.state.contacts.begin());
     const std::vector<ClumpForgery> forgeries{
         {"counting", [](Certificate& c) { ++c.claims.counting->hypostaticity; }},
         {"counting",

@@ -96,8 +96,7 @@ BOOST_FIXTURE_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_
     finds(folder, "events.jsonl", one ? "\"opened\":\"1-bottom\"" : "\"opened\":\"2-bottom\"",
           one ? "\"opened\":\"2-bottom\"" : "\"opened\":\"1-bottom\"", "at first order");
     // The direction of the radii, and the first-order force of the contact that stays at 0.
-    const std::string stored = scratch::read(folder / "states/eq_000001.json");
-    const std::string rho = value_of(stored, "rho").substr(1);
+    const std::string rho = value_of(scratch::read(folder / "states/eq_000001.json"), "rho").substr(1);
     finds(folder, "states/eq_000001.json", "\"rho\":[" + rho, "\"rho\":[" + times(rho, 2), "direction of the radii");
     finds_term(folder, "zero", "],", 1.001, "first-order force");
 }

@@ -79,8 +79,7 @@ BOOST_FIXTURE_TEST_CASE(arcs_that_lead_to_no_equilibrium_are_replayed, scratch::
     for (const bool from_start : {false, true}) { // the first rearrangement does not end, or none begins
         const fs::path run = folder / (from_start ? "none" : "first");
         play_whole(from_start ? overloaded(3) : prepared(36, 3), 4, options, run);
-        const std::string events = scratch::read(run / "events.jsonl");
-        BOOST_TEST_REQUIRE(events.find("\"arc\":3") != std::string::npos);
+        BOOST_TEST_REQUIRE(scratch::read(run / "events.jsonl").find("\"arc\":3") != std::string::npos);
         const RunVerification answer = verify_run(run);
         played::without_objection(answer);
         BOOST_TEST(answer.arcs_proved == answer.arcs);
@@ -150,8 +149,7 @@ BOOST_FIXTURE_TEST_CASE(under_true_stresses_an_arc_on_which_phi_grows_is_refuted
     const auto phi_falls = [&](const Place& from, const Place& to) {
         const std::vector<Range> forces = to.evidence->forces;
         const auto l = static_cast<std::size_t>(
-            std::max_element(forces.begin(), forces.end(),
-                             [](const Range& a, const Range& b) { return a.lower < b.lower; }) -
+            std::ranges::max_element(forces, [](const Range& a, const Range& b) { return a.lower < b.lower; }) -
             forces.begin());
         EventRecord event;
         event.closed = to_string(to.state->contacts[l]);

@@ -73,8 +73,7 @@ BOOST_AUTO_TEST_CASE(soft_grains_end_at_the_vertex_that_they_came_from) {
         const double backbone = answer.at("moved").at("backbone").get<double>();
         BOOST_TEST(backbone < 25 * part + 1e-11);
         BOOST_TEST(backbone > 5 * part);
-        const std::string rows = scratch::read(moved);
-        BOOST_TEST(std::ranges::count(rows, '\n') == 101);
+        BOOST_TEST(std::ranges::count(scratch::read(moved), '\n') == 101);
         // The vertex is that of the sample: its file has the disks in the opposite order.
         const Packing found = read_state(folder / "s.json").state.packing;
         for (std::size_t a = 0; a < 2; ++a) {

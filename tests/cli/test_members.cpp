@@ -39,8 +39,7 @@ BOOST_FIXTURE_TEST_CASE(verify_takes_an_ensemble_and_adds_up_its_runs, scratch::
 BOOST_FIXTURE_TEST_CASE(one_wrong_or_missing_run_decides_the_status_of_an_ensemble, scratch::InFolder) {
     const fs::path many = ensemble(folder);
     const fs::path header = many / seed(2) / "run.json";
-    const std::string text = scratch::read(header);
-    scratch::write(header, scratch::replaced(text, "\"completed\"", "\"running\""));
+    scratch::write(header, scratch::replaced(scratch::read(header), "\"completed\"", "\"running\""));
     says(run({"verify", many.string()}), 2, {"not finished"});
     scratch::write(header, "nothing");
     const auto unreadable = says(run({"verify", many.string()}), 65, {"cannot be read"});

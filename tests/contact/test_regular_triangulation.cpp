@@ -82,8 +82,7 @@ void check_edges(const Packing& packing, const Triangulation& triangulation) {
 void check_complete(const Packing& packing, const Triangulation& triangulation) {
     check_edges(packing, triangulation);
     const double reach = 0.82 * packing.min_radius();
-    const auto near = required(near_edges(packing, reach, triangulation));
-    BOOST_TEST((near == pairs_within(packing, reach)));
+    BOOST_TEST((required(near_edges(packing, reach, triangulation)) == pairs_within(packing, reach)));
 }
 
 } // namespace

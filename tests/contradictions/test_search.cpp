@@ -144,8 +144,7 @@ Verdict crafted_verdict(const State& state) {
 
 /// Rank of the stored doubles: by `certify` modulo a prime, by crafted inspection in the field.
 void check_counts(const State& state, const CertificateClaims& claims, Objections& wrong) {
-    const bool held = std::any_of(state.contacts.begin(), state.contacts.end(),
-                                  [](const Contact& c) { return c.kind == ContactKind::held; });
+    const bool held = std::ranges::any_of(state.contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
     if (held || !claims.counting) {
         return;
     }
@@ -210,8 +209,8 @@ Objections ask(const State& state, const Truth& truth, bool run, Count& tally) {
     check_verdict("certify", answers.certify, equilibrium, wrong);
     check_verdict("verify", answers.verify, equilibrium, wrong);
     // Crafted inspection speaks of stability under the finite load: where a force is 0 it may differ.
-    const bool all_finite = std::all_of(truth.force.begin(), truth.force.end(),
-                                        [&](const Real& f) { return sign_of(f, truth.force_scale) > 0; });
+    const bool all_finite =
+        std::ranges::all_of(truth.force, [&](const Real& f) { return sign_of(f, truth.force_scale) > 0; });
     if (all_finite) {
         check_verdict("crafted", answers.crafted, equilibrium, wrong);
     }

@@ -180,8 +180,7 @@ BOOST_AUTO_TEST_CASE(nothing_of_an_task_is_left_running_when_it_is_dropped, *boo
         {
             Task task([&] { std::ranges::fill(written, 1); });
         }
-        const int first = written.front();
-        BOOST_TEST((written == std::vector<int>(written.size(), first)));
+        BOOST_TEST((written == std::vector<int>(written.size(), written.front())));
     }
 }
 

@@ -4,9 +4,7 @@
 #include "oracle/pairs.hpp"
 #include "support/scale.hpp"
 #include "support/spheres.hpp"
-#include "support/test.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/exact/number.hpp>
@@ -189,8 +187,7 @@ BOOST_AUTO_TEST_CASE(counts_agree_with_the_exact_inspection_of_the_examples) {
 BOOST_AUTO_TEST_CASE(a_prepared_packing_with_noise_is_isostatic_over_decades) {
     isostat::PreparationOptions options{.disks = 100, .seed = 4};
     isostat::PreparationReport report;
-    const auto state = required(isostat::prepare(options, report));
-    Packing packing = state.packing;
+    Packing packing = required(isostat::prepare(options, report)).packing;
     shake(packing, 1e-9, 9);
     const Plateau answer = plateau(packing, decades(-11, -1));
     BOOST_REQUIRE(!answer.ranges.empty());

@@ -6,8 +6,6 @@
 #include "ensemble/processes.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/core/result.hpp>
-
 #include <csignal>
 
 using namespace program;
@@ -165,8 +163,7 @@ BOOST_FIXTURE_TEST_CASE(killed_ensembles_and_killed_samples_resume_to_the_same_t
             BOOST_TEST(contains(text, "\"completed\": 2"));
         } else {
             BOOST_TEST(background.signal_at(out / "samples/seed_000002/run.json", 1, signal));
-            const int status = background.wait();
-            BOOST_TEST(status == (signal == SIGTERM ? 130 : 128 + signal));
+            BOOST_TEST(background.wait() == (signal == SIGTERM ? 130 : 128 + signal));
             if (signal == SIGTERM) {
                 BOOST_TEST(contains(scratch::read(out / "ensemble.json"), "\"missing\": 1"));
             }

@@ -104,8 +104,7 @@ BOOST_AUTO_TEST_CASE(two_disks_that_are_nearly_equal_nearly_let_go) {
 
 BOOST_AUTO_TEST_CASE(loads_next_to_the_limit) {
     State state = ::prepared(30, 1);
-    const auto start = required(inspect_vertex(state));
-    const double limit = start.record.stress_high;
+    const double limit = required(inspect_vertex(state)).record.stress_high;
     BOOST_REQUIRE(std::isfinite(limit));
     for (const int side : {-1, 1}) {
         for (int k = 2; k <= 16; k += 2) {

@@ -203,8 +203,7 @@ BOOST_FIXTURE_TEST_CASE(kind_4_a_square_whose_walls_stay_is_jammed_by_its_size, 
 BOOST_FIXTURE_TEST_CASE(kind_5_gaps_and_forces_below_the_digits_are_not_told_from_0, scratch::InFolder) {
     for (const char* lattice :
          {"05_torus3_triangular.xyz", "05_torus_n7_c1.xyz", "05_torus_n8_c2.xyz", "05_torus11.xyz"}) {
-        const auto found = json_of(in_field("plateau", lattice, {"--json"}), 1);
-        BOOST_TEST(found["isostatic"].empty(), lattice);
+        BOOST_TEST(json_of(in_field("plateau", lattice, {"--json"}), 1)["isostatic"].empty(), lattice);
     }
     const std::string state = folder.at("seven.json");
     says(in_field("import", "05_torus_n7_c1.xyz", {"--cell", "isotropic", "-o", state}), 2,
@@ -541,8 +540,7 @@ BOOST_FIXTURE_TEST_CASE(kind_28_a_manifest_to_begin_with, scratch::InFolder) {
     scratch::write(folder / "series.toml",
                    scratch::replaced(scratch::replaced(scratch::read(series), "sigma1 = 1.0", "sigma1 = 0.001"),
                                      "kind = \"none\"", "kind = \"linear\"\nstiffness = 1"));
-    const auto found = json_of(run({"compare", series, "--bundle", "0", "--json"}));
-    BOOST_TEST(found["counts"]["same"] == 2);
+    BOOST_TEST(json_of(run({"compare", series, "--bundle", "0", "--json"}))["counts"]["same"] == 2);
     // Without sigma1 in the manifest each frame has its own.
     const std::string one = scratch::read(series);
     scratch::write(folder / "series.toml", scratch::replaced(one, "sigma1 = 0.001", ""));

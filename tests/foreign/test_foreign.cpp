@@ -188,8 +188,7 @@ BOOST_AUTO_TEST_CASE(gaps_are_known_to_the_digits_of_the_file) {
     BOOST_TEST(near(read(digits).rounding, std::sqrt(8.0) * 5e-7));
     const std::string scaled = replaced(digits, "id type x y z radius", "id type xs ys zs radius");
     BOOST_TEST(near(read(scaled).rounding, 4 * std::sqrt(8.0) * 5e-7));
-    const std::string size = replaced(data_file, "1 1 0.5 2.5", "1 1 0.500001 2.5");
-    BOOST_TEST(near(read(size).rounding, 5e-6));
+    BOOST_TEST(near(read(replaced(data_file, "1 1 0.5 2.5", "1 1 0.500001 2.5")).rounding, 5e-6));
     const std::string box = replaced(dump, "-1 3\n", "-1 3.000001\n");
     BOOST_TEST(near(read(box, with_walls(ForeignWalls::box)).rounding, 4 * 5e-7));
     BOOST_TEST(read(box).rounding < 1e-14); // without walls they are not used
@@ -362,15 +361,14 @@ BOOST_AUTO_TEST_CASE(what_is_written_for_other_programs_is_read_bit_for_bit) {
     same(csv_text(state.packing), "table");
     // With the contacts of each disk: sums over pairs count twice, those of walls once.
     const std::vector<int> contacts = contacts_of_grains(state);
-    const auto walls = std::count_if(state.contacts.begin(), state.contacts.end(),
-                                     [](const Contact& c) { return c.kind != ContactKind::disk_disk; });
+    const auto walls =
+        std::ranges::count_if(state.contacts, [](const Contact& c) { return c.kind != ContactKind::disk_disk; });
     BOOST_TEST(std::accumulate(contacts.begin(), contacts.end(), 0) ==
                2 * static_cast<int>(state.contacts.size()) - walls);
     same(csv_text(state.packing, contacts), "table");
     options.box.clear();
     same(xyz_text(state.packing, state.packing.q, contacts), "xyz");
-    const std::string last = fmt::format(",{}\n", contacts.back());
-    BOOST_TEST(csv_text(state.packing, contacts).ends_with(last));
+    BOOST_TEST(csv_text(state.packing, contacts).ends_with(fmt::format(",{}\n", contacts.back())));
     BOOST_TEST(csv_text(state.packing, contacts).find("\nid,x,y,r,contacts\n") != std::string::npos);
 }
 

@@ -296,8 +296,8 @@ ForeignPacking read(const std::string& text, const std::string& bodies = "") {
 }
 
 bool says(const ForeignPacking& packing, const std::string& words) {
-    return std::any_of(packing.notes.begin(), packing.notes.end(),
-                       [&](const std::string& note) { return note.find(words) != std::string::npos; });
+    return std::ranges::any_of(packing.notes,
+                               [&](const std::string& note) { return note.find(words) != std::string::npos; });
 }
 
 /// Four disks, the molecules of which are as stated.

@@ -5,9 +5,7 @@
 #include "support/cells.hpp"
 #include "support/clumps.hpp"
 #include "support/scratch.hpp"
-#include "support/test.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
@@ -176,8 +174,7 @@ BOOST_AUTO_TEST_CASE(disks_are_put_into_the_cell_by_whole_periods) {
 
 BOOST_AUTO_TEST_CASE(what_is_written_of_a_cell_is_read_bit_for_bit) {
     for (const char* name : {"rect_16", "tilt_16", "channel_16"}) {
-        const Packing stored =
-            read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state.packing;
+        const Packing stored = cells::of_file(name).packing;
         Packing wrapped = stored;
         BOOST_TEST(wrap_into_cell(wrapped).rounding > 0);
         for (const std::string format : {"lammps-data", "xyz"}) {
@@ -240,8 +237,7 @@ BOOST_AUTO_TEST_CASE(foreign_cells_that_are_none_are_named) {
 
 BOOST_AUTO_TEST_CASE(a_packing_that_is_isostatic_under_pressure_is_found_so) {
     // The first equilibrium in a rectangle with one contact less on the backbone: what a fixed shape needs.
-    const State state = read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/rect_16.json").state;
-    Packing packing = state.packing;
+    Packing packing = cells::of_file("rect_16").packing;
     packing.cell.period_moves = {false, false};
     const auto counts = [&](Strain strain) {
         return isostat::crafted::plateau(packing, {1e-9}, strain).steps.front().backbone;

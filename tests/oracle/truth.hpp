@@ -426,8 +426,8 @@ template <class Real> auto TruthIn<Real>::nearest() const -> const OtherPair* {
 }
 
 template <class Real> int TruthIn<Real>::equilibrium() const {
-    const bool holds = std::any_of(state_->contacts.begin(), state_->contacts.end(),
-                                   [](const Contact& c) { return c.kind == ContactKind::held; });
+    const bool holds =
+        std::ranges::any_of(state_->contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
     return holds ? -1 : at_rest();
 }
 

@@ -5,8 +5,6 @@
 #include "support/clumps.hpp"
 #include "support/test.hpp"
 
-#include <isostat/core/result.hpp>
-
 using namespace isostat;
 using isostat::Bodies;
 using isostat::Error;
@@ -268,10 +266,9 @@ BOOST_AUTO_TEST_CASE(the_area_of_a_union_is_that_of_points_on_a_grid) {
         int inside = 0;
         for (double x = 8; x < 14; x += step) {
             for (double y = 8; y < 14; y += step) {
-                inside += std::any_of(rows.begin(), rows.end(),
-                                      [&](const auto& d) { return std::hypot(d[0] - x, d[1] - y) < d[2]; })
-                              ? 1
-                              : 0;
+                inside +=
+                    std::ranges::any_of(rows, [&](const auto& d) { return std::hypot(d[0] - x, d[1] - y) < d[2]; }) ? 1
+                                                                                                                    : 0;
             }
         }
         const Packing p = bodies_of(rows, {{0, 1, 1}, {0, 2, 1}, {1, 2, 1}, {1, 3, 1}, {2, 3, 1}});

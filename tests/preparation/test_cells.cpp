@@ -7,7 +7,6 @@
 #include "support/prepared.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/result.hpp>
 
 namespace {
 
@@ -107,8 +106,7 @@ BOOST_AUTO_TEST_CASE(periodic_packings_are_proved_equilibria) {
                 }
                 BOOST_TEST(sum == 0);
             }
-            const Certification proof = certify(state);
-            BOOST_TEST((proof.verdict == Verdict::proved));
+            BOOST_TEST((certify(state).verdict == Verdict::proved));
             BOOST_TEST(packing.solid_fraction() > 0.75);
             BOOST_TEST(packing.solid_fraction() < 0.9);
         }
@@ -163,8 +161,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_in_a_channel) {
 
 BOOST_AUTO_TEST_CASE(the_same_seed_gives_the_same_cell_and_units_do_not_matter) {
     const State one = prepared(periodic(30, 2));
-    const State other = prepared(periodic(30, 2));
-    BOOST_TEST(one.packing.q == other.packing.q, boost::test_tools::per_element());
+    BOOST_TEST(one.packing.q == prepared(periodic(30, 2)).packing.q, boost::test_tools::per_element());
     scales_with_its_radii(one, periodic(30, 2));
 }
 
@@ -246,8 +243,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_of_spheres_is_found_again_and_another_under_anothe
     const State state = prepared(spheres(20, 4));
     const Packing soft = pressed_a_little(state.packing);
     PreparationOptions options = spheres(20, 4);
-    const State again = vertex_near(soft, options);
-    BOOST_TEST(std::abs(again.packing.length(2) - state.packing.length(2)) < 1e-11);
+    BOOST_TEST(std::abs(vertex_near(soft, options).packing.length(2) - state.packing.length(2)) < 1e-11);
     options.ratio = 4;
     const State pressed = vertex_near(soft, options);
     BOOST_TEST((pressed.load.stress == PerAxis<double>{1, 1, 4}));

@@ -5,8 +5,6 @@
 #include "check.hpp"
 #include "support/prepared.hpp"
 
-#include <isostat/core/result.hpp>
-
 namespace {
 
 using namespace isostat;
@@ -142,8 +140,7 @@ BOOST_AUTO_TEST_CASE(an_infeasible_programme_has_no_interior_point) {
 
 BOOST_AUTO_TEST_CASE(a_vertex_found_with_interior_points_is_proved_like_any_other) {
     for (unsigned long long seed = 1; seed <= 4; ++seed) {
-        const auto found = vertex_near(loose_lattice(6, seed), {.large_above = 0});
-        check::is_proved_vertex(found, 1);
+        check::is_proved_vertex(vertex_near(loose_lattice(6, seed), {.large_above = 0}), 1);
     }
 }
 
@@ -173,8 +170,7 @@ BOOST_AUTO_TEST_CASE(a_shaken_vertex_is_found_again) {
 
 BOOST_AUTO_TEST_CASE(a_loose_start_without_dynamics_ends_at_a_vertex_too) {
     for (unsigned long long seed = 1; seed <= 4; ++seed) {
-        const auto found = vertex_near(loose_lattice(5, seed));
-        check::is_proved_vertex(found, 1);
+        check::is_proved_vertex(vertex_near(loose_lattice(5, seed)), 1);
     }
 }
 
@@ -184,8 +180,7 @@ BOOST_AUTO_TEST_CASE(large_overlaps_of_the_start_are_parted) {
         x *= 0.6;
     }
     BOOST_REQUIRE(smallest_gap(start) < -0.3);
-    const auto found = vertex_near(start);
-    check::is_proved_vertex(found, 1);
+    check::is_proved_vertex(vertex_near(start), 1);
 }
 
 // One contact exchanged for a near miss: Newton closes it, and the proofs must see that something else is wrong then.

@@ -96,8 +96,8 @@ BOOST_AUTO_TEST_CASE(the_way_of_large_packings_ends_at_proved_vertices_of_the_sa
         BOOST_TEST(outcome.report.stages[5].name == "relaxation at 1e-05");
         BOOST_TEST(outcome.report.stages[5].residual < 3e-4);
         BOOST_TEST(steps < 100000); // 15 000 to 56 000
-        const auto descent = std::find_if(outcome.report.stages.begin(), outcome.report.stages.end(),
-                                          [](const auto& stage) { return stage.name == "interior descent"; });
+        const auto descent = std::ranges::find_if(outcome.report.stages,
+                                                  [](const auto& stage) { return stage.name == "interior descent"; });
         BOOST_REQUIRE((descent != outcome.report.stages.end()));
         BOOST_TEST(descent->iterations > 10);
         BOOST_TEST(outcome.report.programmes <= 3); // what the descent leaves to the programmes

@@ -4,12 +4,7 @@
 #include "report/run_walk.hpp"
 #include "report/statistics.hpp"
 #include "support/clumps.hpp"
-#include "support/test.hpp"
 
-#include <isostat/core/result.hpp>
-
-#include <iterator>
-#include <sstream>
 #include <tuple>
 
 using namespace program;
@@ -83,8 +78,8 @@ BOOST_FIXTURE_TEST_CASE(a_walk_along_the_records_passes_through_every_stored_sta
 BOOST_FIXTURE_TEST_CASE(what_cannot_be_followed_is_left_out_up_to_the_next_stored_state, scratch::InFolder) {
     make_run(folder, scratch::data("vertex100.txt"));
     checker::RunRecords records = records_of(folder / "run");
-    const auto broken = std::find_if(records.events.begin(), records.events.end(),
-                                     [](const checker::EventRecord& event) { return event.equilibrium == 2; });
+    const auto broken =
+        std::ranges::find_if(records.events, [](const checker::EventRecord& event) { return event.equilibrium == 2; });
     broken->opened = "0-99"; // no contact there
     std::vector<int> relisted;
     const std::vector<std::string> left_out = walk_run(records, [&](const WalkedVertex& vertex) {
@@ -105,8 +100,8 @@ BOOST_AUTO_TEST_CASE(a_walk_holds_and_releases_coordinates) {
     const checker::RunRecords records = records_of(out);
     int held = 0;
     const auto left_out = walk_run(records, [&](const WalkedVertex& vertex) {
-        held += std::any_of(vertex.state.contacts.begin(), vertex.state.contacts.end(),
-                            [](const Contact& contact) { return contact.kind == ContactKind::held; })
+        held += std::ranges::any_of(vertex.state.contacts,
+                                    [](const Contact& contact) { return contact.kind == ContactKind::held; })
                     ? 1
                     : 0;
         return true;

@@ -20,8 +20,8 @@ void refuses_scene(const std::string& text, const std::vector<std::string>& word
 const std::string head = "[packing]\ndisks = 10\n"; // lines 1 and 2
 
 std::string value_of(const Scene& scene, const std::string& section, const std::string& key) {
-    const auto found = std::find_if(scene.settings.begin(), scene.settings.end(),
-                                    [&](const Setting& s) { return s.section == section && s.key == key; });
+    const auto found =
+        std::ranges::find_if(scene.settings, [&](const Setting& s) { return s.section == section && s.key == key; });
     return found == scene.settings.end() ? "absent" : found->value;
 }
 

@@ -33,8 +33,7 @@ BOOST_AUTO_TEST_CASE(the_linear_event_of_two_disks_errs_with_the_square_of_the_a
     std::vector<double> error, arc;
     for (const double distance : {1e-1, 1e-2, 1e-3}) {
         const double r1 = (3 + 2 * std::sqrt(2.0)) * (1 - distance);
-        const State state = two_disks(1, r1, 1, 1);
-        const LinearEvent event = event_of(state, bottom(1));
+        const LinearEvent event = event_of(two_disks(1, r1, 1, 1), bottom(1));
         BOOST_TEST((event.closed == left(1)));
         const double x = 2 * std::sqrt(r1);
         const double y = r1 - 1;

@@ -314,8 +314,8 @@ BOOST_AUTO_TEST_CASE(the_load_on_a_long_strut_is_bounded_with_the_rounding_of_it
         zero.others.push_back(find(state, held(2 * i + 1)));
     }
     const auto mates = Turn(v.statics, zero).mates(find(state, left(0)));
-    const auto end = std::find_if(mates.begin(), mates.end(),
-                                  [&](const EqualForce& mate) { return v.contact(mate.contact) == right(disks - 1); });
+    const auto end = std::ranges::find_if(
+        mates, [&](const EqualForce& mate) { return v.contact(mate.contact) == right(disks - 1); });
     BOOST_TEST_REQUIRE((end != mates.end()));
     BOOST_TEST(std::abs(end->excess.value - sum) > 2e-13); // what was lost
     BOOST_TEST(std::abs(end->excess.value - sum) <= end->excess.radius);

@@ -3,7 +3,6 @@
 #include "support/crafted.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/result.hpp>
 
 using namespace isostat;
 using crafted::play;
@@ -79,8 +78,8 @@ BOOST_AUTO_TEST_CASE(a_held_angle_that_bears_a_torque_is_released) {
     for (const State& place : isostat::test::held_angles()) {
         const Played run = completed(play(ready(with_free_motions_held(place)), +1, 0));
         const std::vector<ArcRecord>& arcs = run.records.arcs;
-        BOOST_TEST(std::any_of(arcs.begin(), arcs.end(),
-                               [](const ArcRecord& arc) { return arc.kind == ArcKind::release && arc.work > 0; }));
+        BOOST_TEST(std::ranges::any_of(
+            arcs, [](const ArcRecord& arc) { return arc.kind == ArcKind::release && arc.work > 0; }));
         BOOST_TEST((certify(run.records.states.back()).verdict == Verdict::proved));
     }
 }

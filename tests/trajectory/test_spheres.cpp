@@ -3,8 +3,6 @@
 #include "support/crafted.hpp"
 #include "support/spheres.hpp"
 
-#include <isostat/core/result.hpp>
-
 using namespace isostat;
 using ::crafted::Played;
 
@@ -48,8 +46,7 @@ Contact contact_or_held(const nlohmann::json& c) {
 
 BOOST_AUTO_TEST_CASE(two_spheres_go_round_a_loop) {
     const double dx = std::sqrt(7.0); // radii 1 and 2
-    const State start = start_of_spheres("closed_two", {1, 1.5, 1});
-    const Played down = one_proved_arc(start, -1);
+    const Played down = one_proved_arc(start_of_spheres("closed_two", {1, 1.5, 1}), -1);
     ::crafted::check_arc(down, floor_of(1), ::crafted::left(1), 1 / dx);
     check_sphere_lengths(down.state.packing, {4, 4, 3 + dx});
     const Played up = one_proved_arc(down.state, +1);

@@ -180,6 +180,7 @@ BOOST_AUTO_TEST_CASE(every_interval_contains_the_value_at_the_true_vertex_of_ran
             }
         }
     }
+    BOOST_TEST(tried >= 100);
     BOOST_TEST(complete >= tried - 2, complete << " of " << tried);
 }
 

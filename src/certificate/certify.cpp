@@ -457,6 +457,16 @@ void Prover::look_at_zeros(ForcesClaim& claim, SignFailures& failures) const {
     }
 }
 
+/// By more than `room`. A pair with the same interval as the nearest one need not have the same gap.
+bool another_may_be_nearer(const std::vector<Interval>& gaps, std::size_t nearest, double room) {
+    for (std::size_t k = 0; k < gaps.size(); ++k) {
+        if (k != nearest && gaps[k].lower < gaps[nearest].upper - room) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool Prover::prove_gaps() {
     if (const auto pair = fixed_overlap(state_.packing)) {
         refute("gaps", fixed_and_overlap(*pair));
@@ -482,8 +492,8 @@ bool Prover::prove_gaps() {
         // precision.md B1 (last operations)
         GapsClaim claim{(pairs.reach - weight * vertex_->distance()) * (1 - 0x1p-50), Contact(), vertex_->rung()};
         claim.smallest = arcs.below(claim.smallest);
-        Interval nearest{infinity, infinity};
         std::vector<Interval> gaps;
+        std::size_t nearest = 0; // place in these
         doubtful.clear();
         for (const Contact& pair : pairs.near) {
             Interval h = vertex_->gap(pair);
@@ -497,16 +507,14 @@ bool Prover::prove_gaps() {
                 doubtful = fmt::format("the gap of {} is in {}", named(pair), shown(h));
             }
             claim.smallest = std::min(claim.smallest, h.lower);
-            if (h.upper < nearest.upper) {
-                nearest = h;
+            if (gaps.size() == 1 || h.upper < gaps[nearest].upper) {
+                nearest = gaps.size() - 1;
                 claim.where = pair;
             }
         }
         // checker.md K9, half of what the claim leaves open: another pair may be nearer than the one named by more
         const double room = 0x1p-47 * largest_length(state_.packing);
-        const bool unclear = std::ranges::any_of(
-            gaps, [&](const Interval& h) { return h != nearest && h.lower < nearest.upper - room; });
-        if (doubtful.empty() && unclear) {
+        if (doubtful.empty() && another_may_be_nearer(gaps, nearest, room)) {
             doubtful = "which pair comes nearest is not known";
         }
         if (doubtful.empty() && claim.smallest > 0) {

@@ -3,6 +3,7 @@
 #include "support/test.hpp"
 
 #include <isostat/certificate/certify.hpp>
+#include <isostat/io/state_file.hpp>
 #include <isostat/packing/load.hpp>
 
 #include <tuple>
@@ -82,6 +83,16 @@ State state_of(const Lattice& lattice) {
 }
 
 } // namespace
+
+/// Gaps of 1-2 and 2-3 differ by less than the vertex is known to, so that their intervals in double are the same.
+BOOST_AUTO_TEST_CASE(of_two_gaps_with_one_interval_the_smaller_one_is_named) {
+    const State state =
+        read_any_state(std::string(ISOSTAT_TEST_DATA) + "/nearly_equal_gaps.json", Dimensions::any_clumps).state;
+    const std::optional<GapsClaim> gaps = certify(state).claims.gaps;
+    BOOST_REQUIRE(gaps.has_value());
+    BOOST_TEST(isostat::to_string(gaps->where, 3) == "2-3");
+    BOOST_TEST((gaps->rung != Rung::double_bound));
+}
 
 BOOST_AUTO_TEST_CASE(the_digits_of_another_program_lie_in_every_interval) {
     for (const std::string& name : packings) {
